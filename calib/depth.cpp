@@ -41,6 +41,12 @@ std::optional<Eigen::Vector3d> DepthGeometry::point(double column, double row, d
   return result;
 }
 
+std::optional<double> depth_in_the_middle(const Calibration& calibration, int disparity) {
+  const DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
+  const auto point = geometry.point(calibration.rig.width / 2.0, calibration.rig.height / 2.0, disparity);
+  return point ? std::optional(point->z()) : std::nullopt;
+}
+
 std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
                                              const kernels::GrayImage& disparity) {
   std::vector<std::uint16_t> result(disparity.pixels.size(), 0);

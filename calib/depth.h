@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/calibration.h"
 #include "models/kernels/gray_image.h"
 
 namespace stereotlm::calib {
@@ -20,6 +21,10 @@ struct DepthGeometry {
   // be whole numbers. Nullopt if the point is not in front of the camera at a finite distance.
   std::optional<Eigen::Vector3d> point(double column, double row, double disparity) const;
 };
+
+// The depth in mm at which an object in the middle of the picture has this disparity of the board. Nullopt if
+// it is infinitely far away.
+std::optional<double> depth_in_the_middle(const Calibration& calibration, int disparity);
 
 // Depth (z) of each pixel of the board's output, row by row, to the nearest millimetre. It is 0 where there
 // is no disparity, or where the depth is less than half a millimetre or above 65535.

@@ -78,7 +78,12 @@ kernels::RectificationTable parse_lut(std::string_view bytes, int width, int hei
   return table;
 }
 
-std::vector<int> source_lines(const kernels::RectificationTable& table, int lines) {
+std::size_t entries_without_source(const kernels::RectificationTable& table) {
+  return static_cast<std::size_t>(std::count_if(table.entries.begin(), table.entries.end(),
+                                                [](std::uint32_t e) { return !kernels::entry_is_valid(e); }));
+}
+
+int source_lines(const kernels::RectificationTable& table, int lines) {
   if (const auto found = problems(table); !found.empty()) throw std::invalid_argument(found.front());
   if (lines < 1 || lines > table.height) {
     throw std::invalid_argument("lines = " + std::to_string(lines) + ": must be 1.." +
@@ -94,12 +99,12 @@ std::vector<int> source_lines(const kernels::RectificationTable& table, int line
       last[row] = std::max(last[row], kernels::entry_row(*entry));
     }
   }
-  std::vector<int> counts;
+  int most = 0;
   for (std::ptrdiff_t top = 0; top + lines <= table.height; ++top) {
-    counts.push_back(std::max(0, *std::max_element(last.begin() + top, last.begin() + top + lines) + 1 -
-                                     *std::min_element(first.begin() + top, first.begin() + top + lines)));
+    most = std::max(most, *std::max_element(last.begin() + top, last.begin() + top + lines) + 1 -
+                              *std::min_element(first.begin() + top, first.begin() + top + lines));
   }
-  return counts;
+  return most;
 }
 
 }  // namespace stereotlm::calib

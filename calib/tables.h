@@ -38,10 +38,13 @@ std::size_t lut_byte_count(int width, int height);
 // Throws std::runtime_error if the bytes are no table for images of this size, or the table has problems.
 kernels::RectificationTable parse_lut(std::string_view bytes, int width, int height);
 
+// The number of entries that are not valid.
+std::size_t entries_without_source(const kernels::RectificationTable& table);
+
 // How many source lines a front end would have to buffer if it kept lines instead of reading single pixels.
-// Value i is for rows i..i+lines-1 of the rectified picture: the last source row that a valid entry of these
-// rows names, minus the first, plus 1; 0 without valid entries. Returns height - lines + 1 values. Throws
-// std::invalid_argument if the table has problems or `lines` is not 1..height.
-std::vector<int> source_lines(const kernels::RectificationTable& table, int lines);
+// For a window of `lines` rows of the rectified picture these are the lines from the first to the last one
+// that a valid entry of these rows names. Returns the largest number of all places of the window; 0 without
+// valid entries. Throws std::invalid_argument if the table has problems or `lines` is not 1..height.
+int source_lines(const kernels::RectificationTable& table, int lines);
 
 }  // namespace stereotlm::calib

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -16,14 +14,12 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "calib/depth.h"
-#include "calib/synthetic_rig.h"
+#include "calib/grid_sheet.h"
 #include "calib/tables.h"
-#include "models/fpga/core_config.h"
 #include "models/kernels/limits.h"
 #include "sw/cli/command.h"
 #include "sw/files/output_file.h"
@@ -31,11 +27,12 @@
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
-#include "sw/media/load.h"
+#include "sw/media/synthetic_rig.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/calibration_library.h"
+#include "sw/runs/sources/grid_pictures.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -71,12 +68,11 @@ std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictu
                      pictures, result.calibration.grid.corners(), corners, result.left_out.size());
 }
 
-// The nearest and the farthest depth that the disparities cover, at the centre of the picture.
+// The nearest and the farthest depth that the disparities cover.
 std::string depths_text(const Calibration& made) {
-  const calib::DepthGeometry geometry = {made.rectification.q, made.disparity_offset};
-  const auto depth = [&](int disparity) {
-    const auto point = geometry.point(made.rig.width / 2.0, made.rig.height / 2.0, disparity);
-    return point ? fmt::format("{:.0f} mm", point->z()) : "infinity";
+  const auto depth = [&made](int disparity) {
+    const auto found = calib::depth_in_the_middle(made, disparity);
+    return found ? fmt::format("{:.0f} mm", *found) : "infinity";
   };
   return depth(made.disparities - 1) + " .. " + depth(0);
 }
@@ -91,13 +87,11 @@ std::string disparities_text(const Calibration& made) {
 }
 
 std::string table_text(const kernels::RectificationTable& table) {
-  const auto invalid = std::count_if(table.entries.begin(), table.entries.end(),
-                                     [](std::uint32_t entry) { return !kernels::entry_is_valid(entry); });
-  std::string text = fmt::format("{} of {} entries without source", invalid, table.entries.size());
+  std::string text = fmt::format("{} of {} entries without source", calib::entries_without_source(table),
+                                 table.entries.size());
   if (table.height >= kWindow) {
-    const std::vector<int> lines = calib::source_lines(table, kWindow);
     text += fmt::format("; a window of {} lines touches up to {} of the picture", kWindow,
-                        *std::max_element(lines.begin(), lines.end()));
+                        calib::source_lines(table, kWindow));
   }
   return text;
 }
@@ -154,7 +148,7 @@ constexpr int kDefaultDisparities = 80;
 
 constexpr const char* kCalibrateExample =
     "stereotlm calibrate --left 'left*.jpg' --right 'right*.jpg' --grid 9x6 --square-mm 25 --out rig.yaml";
-constexpr const char* kPrintExample = "stereotlm calibrate --print-grid 9x6 --square-mm 25 --out grid.pdf";
+constexpr const char* kPrintExample = "stereotlm calibrate --print-grid 9x6 --square-mm 25 --out grid.svg";
 constexpr const char* kGridRule = "columns x rows of inner corners, such as 9x6";
 
 // Sets columns and rows; returns false if the text is not CxR.
@@ -186,14 +180,12 @@ struct CalibrateOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
-    const std::string extension = std::filesystem::path(out.text()).extension();
     if (print_grid.is_given()) {
       for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
         if (option->is_given())
           problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
       }
-      if (out.is_given() && extension != ".pdf" && extension != ".svg")
-        problems.add(fmt::format("--out '{}': must end in .pdf or .svg", out.text()));
+      ends_in(".svg")(out, problems);
     } else {
       if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
       if (synthetic.is_given() && (left.is_given() || right.is_given()))
@@ -261,124 +253,16 @@ struct CalibrateOptions : Options {
       Option(this, "--out", "F.yaml",
              "The calibration; the tables F_left.lut and F_right.lut and the drawings F_drawings/ go beside "
              "it. With "
-             "--print-grid the sheet, F.pdf or F.svg",
-             {required("the calibration, F.yaml, or the sheet of --print-grid, F.pdf or F.svg")});
+             "--print-grid the sheet, F.svg",
+             {required("the calibration, F.yaml, or the sheet of --print-grid, F.svg")});
 };
-
-using Names = std::vector<std::string>;
-
-// The files that match a pattern, sorted by name. A file whose name equals the pattern is taken literally.
-Names files_of(const std::string& option, const Names& patterns, process::Problems& problems) {
-  Names files;
-  for (const std::string& pattern : patterns) {
-    std::error_code none;
-    if (std::filesystem::exists(pattern, none)) {
-      files.push_back(pattern);
-      continue;
-    }
-    glob_t found = {};
-    const int status = glob(pattern.c_str(), 0, nullptr, &found);
-    if (status == GLOB_NOMATCH) {
-      problems.add(
-          fmt::format("{} '{}': no such file: must be a file's name, or a pattern of some", option, pattern));
-    } else if (status != 0) {
-      problems.add(fmt::format("{} '{}': a folder of this pattern cannot be read", option, pattern));
-    }
-    for (std::size_t i = 0; i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
-    globfree(&found);
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-// Prints a note about the first pair whose names do not end in the same number: if each side lacks a
-// different picture, all pairs between these two are wrong.
-void compare_numbers(const Names& left, const Names& right) {
-  const auto number_of = [](const std::string& file) {
-    const std::string stem = fs::path(file).stem();
-    return stem.substr(stem.find_last_not_of("0123456789") + 1);
-  };
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (number_of(left[i]) == number_of(right[i])) continue;
-    process::say("note",
-                 fmt::format("pictures are paired in the order of their names, '{}' with '{}': do they "
-                             "belong together?",
-                             left[i], right[i]));
-    return;
-  }
-}
-
-// Loads the pictures of the calibration grid that match the patterns. Sorts both sides by name, and pairs
-// them in this order. Reports problems: a pattern without files, different counts, a file that is no picture,
-// a picture that appears twice, different sizes. Prints notes: how many pictures were converted to grey, and
-// the first pair whose names end in different numbers. Returns early when interrupted().
-std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Names& right,
-                                                   process::Problems& problems) {
-  const Names left_files = files_of("--left", left, problems);
-  const Names right_files = files_of("--right", right, problems);
-  if (left_files.empty() || right_files.empty()) return {};
-  if (left_files.size() != right_files.size()) {
-    problems.add(fmt::format(
-        "--left, --right: {} left pictures ('{}' .. '{}') and {} right ones ('{}' .. '{}'): must be as many",
-        left_files.size(), left_files.front(), left_files.back(), right_files.size(), right_files.front(),
-        right_files.back()));
-    return {};
-  }
-  std::map<std::string, std::string> paths;  // paths by SHA-256 of the pixels
-  std::string first;
-  int width = 0;  // of the first picture
-  int height = 0;
-  int converted = 0;
-  const auto load = [&](const std::string& option, const std::string& path) {
-    kernels::GrayImage image;
-    problems.attempt(option + ' ', [&] {
-      media::LoadedGray loaded = media::load_gray(path);
-      converted += loaded.converted_from_colour ? 1 : 0;
-      image = std::move(loaded.image);
-      const auto refuse = [&path](const std::string& rule) {
-        throw std::runtime_error(fmt::format("'{}': {}", path, rule));
-      };
-      const std::string size = fmt::format("{}x{} pixels: ", image.width, image.height);
-      const bool is_first = paths.empty();
-      // The same picture twice would count twice without new information.
-      const auto [known, is_new] =
-          paths.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), path);
-      if (!is_new) refuse(fmt::format("the same picture as '{}': must be another one", known->second));
-      if (is_first) std::tie(first, width, height) = std::tuple(path, image.width, image.height);
-      const kernels::IntegerRule& widths = fpga::kWidthWithTableRule;
-      const kernels::IntegerRule& heights = fpga::kHeightWithTableRule;
-      if (is_first && !(widths.allows(width) && heights.allows(height)))
-        refuse(size + fmt::format("a board's images with a look-up table are {} wide and {} high",
-                                  widths.text(), heights.text()));
-      if (image.width != width || image.height != height)
-        refuse(size + fmt::format("must be as large as '{}', {}x{}", first, width, height));
-    });
-    return image;
-  };
-  std::vector<calib::PicturePair> pairs;
-  for (std::size_t i = 0; i < left_files.size(); ++i) {
-    if (process::interrupted()) return {};
-    pairs.push_back(
-        {left_files[i], right_files[i], load("--left", left_files[i]), load("--right", right_files[i])});
-  }
-  if (converted > 0)
-    process::say("note", fmt::format("{} of {} pictures: colour, converted to grey", converted,
-                                     2 * left_files.size()));
-  compare_numbers(left_files, right_files);
-  return pairs;
-}
 
 int leave_unwritten() { return interrupted("nothing was written"); }
 
 int print_grid(const CalibrateOptions& options) {
   const calib::GridShape grid = options.grid_shape();
   process::catch_interrupts();
-  std::string sheet;
-  process::attempt_or_refuse("--print-grid: ", [&] {
-    const bool is_pdf = fs::path(options.out.text()).extension() == ".pdf";
-    const runs::CalibrationFunctions& functions = runs::calibration_functions();
-    sheet = is_pdf ? functions.grid_sheet_pdf(grid) : functions.grid_sheet_svg(grid);
-  });
+  const std::string sheet = calib::grid_sheet_svg(grid);
   const files::FileKind kind = {"sheet of the same grid", [&sheet](const fs::path& earlier) {
                                   return files::read_whole_file(earlier) == sheet;
                                 }};
@@ -389,24 +273,11 @@ int print_grid(const CalibrateOptions& options) {
   return kDone;
 }
 
-// The pictures of a synthetic rig.
-std::vector<calib::PicturePair> synthetic_pictures(const calib::SyntheticRig& rig,
-                                                   const calib::GridShape& grid, const fs::path& folder) {
-  std::vector<calib::PicturePair> pairs;
-  for (int number = 0; number < kSyntheticPairs; ++number) {
-    auto pictures = rig.grid_view(grid, number);
-    const auto name = [&](const char* side) {
-      return (folder / fmt::format("{}_{:02}.png", side, number)).string();
-    };
-    pairs.push_back({name("left"), name("right"), std::move(pictures.left), std::move(pictures.right)});
-  }
-  return pairs;
-}
-
 class Calibrator {
  public:
   explicit Calibrator(const CalibrateOptions& options)
-      : options_(options), request_{options.grid_shape(), {}, 0, {}} {
+      : options_(options), files_(runs::rig_files(options.out.text())) {
+    request_.grid = options.grid_shape();
     request_.disparities = options.disparities.number<int>().value_or(kDefaultDisparities);
     request_.disparity_offset = options.disparity_offset();
   }
@@ -415,26 +286,7 @@ class Calibrator {
     process::catch_interrupts();
     process::Problems problems;
     load_pictures(problems);
-    const bool is_synthetic = options_.synthetic.is_given();
-    std::vector<files::NamedFile> inputs;
-    for (const calib::PicturePair& pair : request_.pictures) {
-      if (is_synthetic) break;  // the pictures are outputs
-      inputs.push_back({"--left", pair.left_name});
-      inputs.push_back({"--right", pair.right_name});
-    }
-    problems.attempt("--out ", [&] {
-      files_ = runs::rig_files(options_.out.text());
-      fs::path folder = files_.calibration.parent_path();
-      if (folder.empty()) folder = ".";
-      std::error_code error;
-      const fs::file_status status = fs::status(folder, error);
-      if (!fs::is_directory(status)) {
-        throw std::runtime_error(fmt::format("'{}': {}", folder.string(),
-                                             fs::status_known(status) ? "no such folder" : error.message()));
-      }
-      output_ = std::make_unique<files::OutputFolder>(
-          folder, runs::calibration_content(files_, is_synthetic, inputs));
-    });
+    problems.attempt("--out ", [&] { open_output(); });
     if (process::interrupted()) return leave_unwritten();
     problems.check();
     calibrate();
@@ -453,32 +305,58 @@ class Calibrator {
   }
 
  private:
+  void load_pictures(process::Problems& problems) {
+    if (!options_.synthetic.is_given()) {
+      request_.pictures = runs::load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
+      return;
+    }
+    problems.attempt("--synthetic: ", [&] {
+      rig_.emplace(*options_.synthetic.number<std::uint64_t>(), kSyntheticWidth, kSyntheticHeight);
+      for (int number = 0; number < kSyntheticPairs; ++number) {
+        auto [left, right] = rig_->grid_view(request_.grid, number);
+        request_.pictures.push_back({files_.pictures / fmt::format("left_{:02}.png", number),
+                                     files_.pictures / fmt::format("right_{:02}.png", number),
+                                     std::move(left), std::move(right)});
+      }
+    });
+  }
+
+  void open_output() {
+    std::vector<files::NamedFile> inputs;
+    if (!rig_) {  // the pictures of a synthetic rig are outputs
+      for (const calib::PicturePair& pair : request_.pictures) {
+        inputs.push_back({"--left", pair.left_name});
+        inputs.push_back({"--right", pair.right_name});
+      }
+    }
+    fs::path folder = files_.calibration.parent_path();
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (!fs::is_directory(status)) {
+      throw std::runtime_error(fmt::format("'{}': {}", folder.string(),
+                                           fs::status_known(status) ? "no such folder" : error.message()));
+    }
+    output_ = std::make_unique<files::OutputFolder>(
+        folder, runs::calibration_content(files_, rig_.has_value(), inputs));
+  }
+
   // Calibrates on a separate thread, because OpenCV cannot be stopped: an interrupt ends the process.
   void calibrate() {
     constexpr std::chrono::milliseconds kPollInterval{50};
-    auto result =
-        std::async(std::launch::async, runs::calibration_functions().calibrate, std::cref(request_));
+    const runs::CalibrationFunctions& functions = runs::calibration_functions();
+    auto work = std::async(std::launch::async, [&] {
+      result_ = functions.calibrate(request_);
+      drawings_ = functions.drawings(request_, result_);
+    });
     runs::ProgressLine progress(fmt::format("{} pairs of pictures are compared", request_.pictures.size()));
-    while (result.wait_for(kPollInterval) != std::future_status::ready) {
+    while (work.wait_for(kPollInterval) != std::future_status::ready) {
       progress.show_time();
       if (!process::interrupted()) continue;
       output_.reset();
       std::_Exit(leave_unwritten());
     }
-    process::attempt_or_refuse("", [&] { result_ = result.get(); });
-  }
-
-  void load_pictures(process::Problems& problems) {
-    if (!options_.synthetic.is_given()) {
-      request_.pictures = load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
-      return;
-    }
-    problems.attempt("--synthetic: ", [&] {
-      rig_ = std::make_unique<calib::SyntheticRig>(*options_.synthetic.number<std::uint64_t>(),
-                                                   kSyntheticWidth, kSyntheticHeight);
-      request_.pictures =
-          synthetic_pictures(*rig_, request_.grid, runs::rig_files(options_.out.text()).pictures);
-    });
+    process::attempt_or_refuse("", [&] { work.get(); });
   }
 
   // Adds a file of the calibration, which has this path.
@@ -495,40 +373,14 @@ class Calibrator {
     add(files_.left_lut, left);
     add(files_.right_lut, right);
     add(files_.calibration, runs::calibration_functions().calibration_yaml(result_.calibration));
-    draw(files_.drawings);
+    for (const auto& [name, png] : drawings_) add(files_.drawings / name, png);
     if (rig_) write_synthetic(files_.pictures);
-  }
-
-  void draw(const fs::path& folder) {
-    const runs::CalibrationFunctions& functions = runs::calibration_functions();
-    for (const calib::CalibratedPair& pair : result_.pairs) {
-      if (process::interrupted()) return;
-      const calib::PicturePair& pictures = request_.pictures[pair.picture];
-      const auto named = [](const std::string& path, const kernels::GrayImage& image) {
-        return calib::CaptionedImage{fs::path(path).filename(), image};
-      };
-      std::vector<bool> left_out = pair.used;
-      left_out.flip();
-      add(folder / fmt::format("corners_{:02}.png", pair.picture),
-          functions.encode_corners_png(
-              request_.grid, named(pictures.left_name, pictures.left), {pair.corners.left, left_out},
-              named(pictures.right_name, pictures.right), {pair.corners.right, left_out}));
-      add(folder / fmt::format("rectified_{:02}.png", pair.picture),
-          functions.encode_rectified_pair_png(
-              named(pictures.left_name, kernels::rectify(pictures.left, result_.tables.left)),
-              named(pictures.right_name, kernels::rectify(pictures.right, result_.tables.right))));
-    }
-    add(folder / "displacement.png",
-        functions.encode_displacement_png(result_.tables.left, result_.tables.right));
-    add(folder / "source_lines.png",
-        functions.encode_source_lines_png(result_.tables.left, result_.tables.right));
   }
 
   // Writes the pictures that the calibration used, and a stereo pair of a scene with the disparities that the
   // board should find.
   void write_synthetic(const fs::path& folder) {
     for (const calib::PicturePair& pictures : request_.pictures) {
-      if (process::interrupted()) return;
       add(pictures.left_name, media::encode_png_gray(pictures.left));
       add(pictures.right_name, media::encode_png_gray(pictures.right));
     }
@@ -536,24 +388,19 @@ class Calibrator {
     add(folder / "scene_left.png", media::encode_png_gray(scene.left));
     add(folder / "scene_right.png", media::encode_png_gray(scene.right));
     const calib::Calibration& made = result_.calibration;
-    const std::vector<float> truth = rig_->disparity(made.rig, made.rectification, made.disparity_offset);
-    kernels::GrayImage grey(made.rig.width, made.rig.height);
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const double level = std::floor(double{truth[i]} * truth_scale() + 0.5);
-      if (level > 0 && level <= 255) grey.pixels[i] = static_cast<std::uint8_t>(level);
-    }
-    add(folder / "scene_truth.png", media::encode_png_gray(grey));
+    const media::Truth truth =
+        media::truth_of(rig_->disparity(made.rig, made.rectification, made.disparity_offset), made.rig.width,
+                        request_.disparities);
+    add(folder / "scene_truth.png", media::encode_png_gray(truth.grey));
+    truth_scale_ = truth.scale;
   }
-
-  // Grey levels per disparity in the truth of the scene.
-  int truth_scale() const { return 255 / request_.disparities; }
 
   std::string written_text() const {
     std::string text =
         row("written", fmt::format("{}, {}, {}, {}/", files_.calibration.string(), files_.left_lut.string(),
                                    files_.right_lut.string(), files_.drawings.string()));
     if (!rig_) return text;
-    const auto& known = rig_->rig();
+    const calib::Rig& known = rig_->rig();
     text += row("known to be", fmt::format("left focal length {:.1f} px, baseline {:.2f} mm",
                                            known.left.matrix(0, 0), known.translation.norm()));
     const std::string folder = files_.pictures.string();
@@ -562,16 +409,18 @@ class Calibrator {
         "{:<16}   --left {}/scene_left.png --right {}/scene_right.png --calibration {} \\\n"
         "{:<16}   --truth {}/scene_truth.png --truth-scale {}\n",
         "to go on", request_.disparities, "", folder, folder, files_.calibration.string(), "", folder,
-        truth_scale());
+        truth_scale_);
     return text;
   }
 
   const CalibrateOptions& options_;
+  const runs::RigFiles files_;
   calib::CalibrationRequest request_;
-  runs::RigFiles files_;
+  std::optional<media::SyntheticRig> rig_;
   std::unique_ptr<files::OutputFolder> output_;
-  std::unique_ptr<calib::SyntheticRig> rig_;
   calib::CalibrationResult result_;
+  std::map<std::string, std::vector<std::uint8_t>> drawings_;  // by name
+  double truth_scale_ = 1;  // grey levels per disparity, of a synthetic rig
 };
 
 int calibrate(const CalibrateOptions& options) {

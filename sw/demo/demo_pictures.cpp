@@ -28,7 +28,8 @@ namespace stereotlm::demo {
 namespace {
 
 namespace fs = std::filesystem;
-using calib::kMargin;
+using calib::Panel;
+using calib::ScaleTexts;
 using kernels::GrayImage;
 using Words = std::vector<std::string>;
 
@@ -50,30 +51,24 @@ void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
   file.commit();
 }
 
-// A picture with its caption, and the texts of its colour scale: the first level, the last one, and no level.
-// A picture in grey has no scale.
-struct Montaged {
-  calib::Panel panel;
-  Words scale = {};
-};
-
 // Levels 0 .. `levels` - 1 in colours, 255 in light grey.
-Montaged coloured_panel(const std::string& caption, const GrayImage& image, int levels, const Words& scale) {
+Panel coloured_panel(const std::string& caption, const GrayImage& image, int levels,
+                     const ScaleTexts& texts) {
   cv::Mat1f values(image.height, image.width);
   std::transform(image.pixels.begin(), image.pixels.end(), values.begin(), [](std::uint8_t level) {
     return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN()
                                                : static_cast<float>(level);
   });
-  return {{caption, calib::in_colors(values, 0, levels - 1)}, scale};
+  return {caption, calib::with_scale(calib::in_colors(values, 0, levels - 1), texts)};
 }
 
-Montaged disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
-                         const std::string& missing) {
+Panel disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
+                      const std::string& missing) {
   return coloured_panel(caption, image, disparities, {"0", std::to_string(disparities - 1), missing});
 }
 
 // Far depths have level 0.
-Montaged depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
+Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
   constexpr int kLevels = 254;
   GrayImage image(width, height, kernels::kInvalidDisparity);
   const auto [near, far] = calib::depth_range(millimetres).value();
@@ -86,18 +81,8 @@ Montaged depth_panel(const std::vector<std::uint16_t>& millimetres, int width, i
                         {fmt::format("{} mm", far), fmt::format("{} mm", near), "no answer"});
 }
 
-// Writes the pictures side by side, with their scales below them.
-void write_montage(const fs::path& path, const std::vector<Montaged>& pictures) {
-  std::vector<calib::Panel> panels;
-  for (const Montaged& picture : pictures) panels.push_back(picture.panel);
-  auto [canvas, places] = calib::side_by_side(panels, calib::kScaleHeight);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const Words& scale = pictures[i].scale;
-    if (scale.empty()) continue;
-    const cv::Point left_bottom(places[i].x, places[i].br().y + calib::kScaleHeight - kMargin);
-    calib::draw_color_scale(canvas, left_bottom, places[i].width, scale[0], scale[1], scale[2]);
-  }
-  write_file(path, calib::encode_png(canvas));
+void write_panels(const fs::path& path, const std::vector<Panel>& panels) {
+  write_file(path, calib::encode_panels_png(panels));
 }
 
 void prepare(const fs::path& source, const fs::path& out) {
@@ -128,14 +113,14 @@ GrayImage nearest_disparity(const media::Truth& truth, int disparities) {
 
 void montage(const Words& words) {
   const int disparities = kernels::kDisparitiesRule.required("DISPARITIES", std::stoi(words[3]));
-  std::vector<Montaged> pictures = {
-      {{"left picture", calib::in_grey(media::load_gray(words[1]).image)}},
+  std::vector<Panel> panels = {
+      {"left picture", calib::in_grey(media::load_gray(words[1]).image)},
       disparity_panel("disparity, pixels", media::load_gray(words[2]).image, disparities, "no answer")};
   if (words.size() == 5) {
     const auto truth = nearest_disparity(media::load_truth(words[4], kTruthScale), disparities);
-    pictures.push_back(disparity_panel("ground truth, pixels", truth, disparities, "unknown"));
+    panels.push_back(disparity_panel("ground truth, pixels", truth, disparities, "unknown"));
   }
-  write_montage(words[0], pictures);
+  write_panels(words[0], panels);
 }
 
 void depth_montage(const Words& words) {
@@ -146,10 +131,10 @@ void depth_montage(const Words& words) {
   const auto table = calib::parse_lut(files::read_whole_file(lut), picture.width, picture.height);
   const auto disparity = media::load_gray((fs::path(words[3]) / "disparity.png").string()).image;
   const calib::DepthGeometry geometry = {calibration.rectification.q, calibration.disparity_offset};
-  write_montage(
+  write_panels(
       words[0],
-      {{{"left picture", calib::in_grey(picture)}},
-       {{"rectified by the left table", calib::in_grey(kernels::rectify(picture, table))}},
+      {{"left picture", calib::in_grey(picture)},
+       {"rectified by the left table", calib::in_grey(kernels::rectify(picture, table))},
        disparity_panel("disparity, pixels", disparity, calibration.disparities, "no answer"),
        depth_panel(calib::depth_millimetres(geometry, disparity), disparity.width, disparity.height)});
 }

@@ -76,7 +76,7 @@ files::OutputContent calibration_content(const RigFiles& files, bool makes_pictu
   content.names = {"@(.yaml|_left.lut|_right.lut)",
                    "_@(drawings|pictures)/",
                    "_drawings/@(corners|rectified)_+([0-9]).png",
-                   "_drawings/@(displacement|source_lines).png",
+                   "_drawings/@(displacement|source_lines).png",  // the latter by earlier versions
                    "_pictures/@(left|right)_+([0-9]).png",
                    "_pictures/scene_@(left|right|truth).png"};
   content.others_stay = true;

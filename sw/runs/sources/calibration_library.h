@@ -2,11 +2,10 @@
 
 #include "calib/calibrate.h"
 #include "calib/drawings.h"
-#include "calib/grid_sheet.h"
 
 namespace stereotlm::runs {
 
-// The functions of calib that need OpenCV and cairo. They are in a library that is loaded by the first call
+// The functions of calib that need OpenCV. They are in a library that is loaded by the first call
 // of calibration_functions().
 struct CalibrationFunctions {
   // calibrate.h, calibration.h
@@ -14,14 +13,8 @@ struct CalibrationFunctions {
   decltype(&calib::calibration_yaml) calibration_yaml;
   decltype(&calib::matched_rows) matched_rows;
   // drawings.h
-  decltype(&calib::encode_corners_png) encode_corners_png;
-  decltype(&calib::encode_rectified_pair_png) encode_rectified_pair_png;
-  decltype(&calib::encode_displacement_png) encode_displacement_png;
-  decltype(&calib::encode_source_lines_png) encode_source_lines_png;
+  decltype(&calib::drawings) drawings;
   decltype(&calib::encode_depth_color_png) encode_depth_color_png;
-  // grid_sheet.h
-  decltype(&calib::grid_sheet_pdf) grid_sheet_pdf;
-  decltype(&calib::grid_sheet_svg) grid_sheet_svg;
 };
 
 // Throws std::runtime_error if the library, which is installed with the program, cannot be loaded.

@@ -24,14 +24,5 @@ calib::CalibrationResult calibrate(const calib::CalibrationRequest& request) {
 extern "C" {
 extern const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions;
 const stereotlm::runs::CalibrationFunctions stereotlm_calibration_functions = {
-    calibrate,
-    calib::calibration_yaml,
-    calib::matched_rows,
-    calib::encode_corners_png,
-    calib::encode_rectified_pair_png,
-    calib::encode_displacement_png,
-    calib::encode_source_lines_png,
-    calib::encode_depth_color_png,
-    calib::grid_sheet_pdf,
-    calib::grid_sheet_svg};
+    calibrate, calib::calibration_yaml, calib::matched_rows, calib::drawings, calib::encode_depth_color_png};
 }

@@ -14,9 +14,9 @@
 #include <string>
 
 #include "calib/calibration.h"
-#include "calib/synthetic_rig.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
+#include "sw/media/synthetic_rig.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "tests/support/fork.h"
 #include "tests/support/scratch_folder.h"
@@ -94,7 +94,7 @@ using Files = std::map<std::string, std::string>;  // contents by name
 std::string calibration_text() {
   calib::Calibration made;
   made.grid = {9, 6, 25.4};
-  made.rig = calib::SyntheticRig(2, 320, 240).rig();
+  made.rig = media::SyntheticRig(2, 320, 240).rig();
   made.rectification = calib::rectify(made.rig);
   made.disparities = 80;
   return calib::calibration_yaml(made);

@@ -302,7 +302,7 @@ class Paths(ProgramTest):
             ([*pictures, "--right", self.right, "--left"], "--left", ""),
             ([*pictures, "--left", self.left, "--right"], "--right", ""),
             ([*calibrate, "--synthetic", "1", "--out"], "--out", ".yaml"),
-            (["calibrate", "--print-grid", *grid, "--out"], "--out", ".pdf"),
+            (["calibrate", "--print-grid", *grid, "--out"], "--out", ".svg"),
             (["diff", self.out], "B must be a folder", ""),
             (["diff", self.out, self.out, "--csv"], "--csv", ".csv"),
             (sweep, "--out", ""),
@@ -366,7 +366,6 @@ class Outputs(ProgramTest):
             ".svg": ["diagram", self.a, "--out"],
             ".csv": ["diff", self.a, self.b, "--csv"],
             ".yaml": [*allocate, "--write"],
-            ".pdf": [*grid],
             ".grid.svg": [*grid],
             ".progress": [*self.sweep, self.store, "--progress"],
         }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "calib/synthetic_rig.h"
 #include "models/kernels/stereo.h"
+#include "sw/media/synthetic_rig.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {
@@ -32,8 +32,8 @@ class CalibrateTest : public testing::Test {
     return request;
   }
 
-  static const SyntheticRig& rig() {
-    static const SyntheticRig rig(8, kWidth, kHeight);
+  static const media::SyntheticRig& rig() {
+    static const media::SyntheticRig rig(8, kWidth, kHeight);
     return rig;
   }
 };

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "calib/opencv_conversions.h"
-#include "calib/synthetic_rig.h"
+#include "sw/media/synthetic_rig.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::calib {
@@ -21,7 +21,7 @@ using testing::HasSubstr;
 Calibration calibration() {
   Calibration made;
   made.grid = {9, 6, 25.4};
-  made.rig = SyntheticRig(2, 320, 240).rig();
+  made.rig = media::SyntheticRig(2, 320, 240).rig();
   made.rectification = rectify(made.rig);
   made.disparities = 112;
   made.disparity_offset = -7;

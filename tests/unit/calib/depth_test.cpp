@@ -34,6 +34,16 @@ TEST(DepthGeometry, HasNoPointAtInfinityOrBehindTheCamera) {
   EXPECT_TRUE(geometry(-5).point(4, 3, 6));
 }
 
+TEST(DepthInTheMiddle, IsThatOfABoardsDisparityOrInfinite) {
+  Calibration calibration;
+  calibration.rig.width = 8;
+  calibration.rig.height = 6;
+  calibration.rectification.q = geometry(0).q;
+  calibration.disparity_offset = 10;
+  EXPECT_DOUBLE_EQ(depth_in_the_middle(calibration, 30).value(), 1000);
+  EXPECT_FALSE(depth_in_the_middle(calibration, -10));
+}
+
 TEST(DepthMillimetres, IsRoundedAndZeroWithoutDepth) {
   kernels::GrayImage disparity(4, 2, 255);
   disparity.at(0, 0) = 40;

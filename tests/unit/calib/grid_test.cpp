@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calib/calibrate.h"
-#include "calib/synthetic_rig.h"
 #include "calib/tables.h"
+#include "sw/media/synthetic_rig.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -21,7 +21,7 @@ double largest_distance(const Corners& a, const Corners& b) {
 }
 
 TEST(Grid, IsFoundToAFractionOfAPixel) {
-  const SyntheticRig rig(1, 320, 240);
+  const media::SyntheticRig rig(1, 320, 240);
   const GridShape shape = {9, 6, 25};
   const auto pictures = rig.grid_view(shape, 0);
   const auto expected = rig.grid_corners(shape, 0);
@@ -58,7 +58,7 @@ Corners part_of(const GridShape& shape, const Corners& corners, const std::vecto
 }
 
 TEST(Grid, IsRefusedIfOnlyAPartWasFound) {
-  const SyntheticRig rig(1, 320, 240);
+  const media::SyntheticRig rig(1, 320, 240);
   const GridShape shape = {9, 6, 25};
   const std::vector<int> all_columns = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   const std::vector<int> all_rows = {0, 1, 2, 3, 4, 5};
@@ -110,8 +110,8 @@ class MatchedRowsTest : public testing::Test {
         .error;
   }
 
-  SyntheticRig rig_{4, 320, 240};
-  SyntheticRig::Pair scene_ = rig_.scene();
+  media::SyntheticRig rig_{4, 320, 240};
+  media::SyntheticRig::Pair scene_ = rig_.scene();
 };
 
 TEST_F(MatchedRowsTest, AgreeToAFractionOfAPixelWithTheRigItself) {

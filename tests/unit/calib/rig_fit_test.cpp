@@ -10,7 +10,7 @@
 
 #include "calib/opencv_conversions.h"
 #include "calib/rig.h"
-#include "calib/synthetic_rig.h"
+#include "sw/media/synthetic_rig.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -52,7 +52,7 @@ class RigFitTest : public testing::Test {
     }
   }
 
-  SyntheticRig known_{5, 640, 480};
+  media::SyntheticRig known_{5, 640, 480};
   std::vector<GridPair> pairs_;
 };
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "calib/opencv_conversions.h"
-#include "calib/synthetic_rig.h"
+#include "sw/media/synthetic_rig.h"
 
 namespace stereotlm::calib {
 namespace {
@@ -59,7 +59,7 @@ void expect_like(const kernels::RectificationTable& table, const Map& map) {
 
 class TablesTest : public testing::Test {
  protected:
-  Rig rig_ = SyntheticRig(3, 320, 240).rig();
+  Rig rig_ = media::SyntheticRig(3, 320, 240).rig();
   Rectification rectification_ = rectify(rig_);
 };
 
@@ -143,9 +143,16 @@ TEST(LutFile, IsRefusedWithAnotherSizeOrABrokenEntry) {
   EXPECT_THROW(parse_lut(bytes, 2, 3), std::runtime_error);
 }
 
+TEST(EntriesWithoutSource, AreCounted) {
+  RectificationTable table = kernels::identity_table(8, 6);
+  EXPECT_EQ(entries_without_source(table), 0U);
+  table.entries[7] = table.entries[20] = 0;
+  EXPECT_EQ(entries_without_source(table), 2U);
+}
+
 // The definition of the header, entry by entry.
-std::vector<int> expected_lines(const RectificationTable& table, int lines) {
-  std::vector<int> expected;
+int expected_lines(const RectificationTable& table, int lines) {
+  int expected = 0;
   for (int top = 0; top + lines <= table.height; ++top) {
     std::vector<int> named;
     for (int i = top * table.width; i < (top + lines) * table.width; ++i) {
@@ -153,7 +160,7 @@ std::vector<int> expected_lines(const RectificationTable& table, int lines) {
       if (kernels::entry_is_valid(entry)) named.push_back(kernels::entry_row(entry));
     }
     const auto [first, last] = std::minmax_element(named.begin(), named.end());
-    expected.push_back(named.empty() ? 0 : *last - *first + 1);
+    if (!named.empty()) expected = std::max(expected, *last - *first + 1);
   }
   return expected;
 }
@@ -167,12 +174,13 @@ TEST(SourceLines, FollowTheirDefinitionForAnyTable) {
   }
   for (int lines = 1; lines <= 12; ++lines)
     EXPECT_EQ(source_lines(table, lines), expected_lines(table, lines));
+  EXPECT_EQ(source_lines(RectificationTable{2, 3, std::vector<std::uint32_t>(6)}, 2), 0);
 }
 
 TEST(SourceLines, RefuseAWindowOutsideThePictureOrABrokenTable) {
   RectificationTable table = kernels::identity_table(8, 6);
   EXPECT_THROW(source_lines(table, 0), std::invalid_argument);
-  EXPECT_EQ(source_lines(table, 6), std::vector<int>(1, 6));
+  EXPECT_EQ(source_lines(table, 6), 6);
   EXPECT_THROW(source_lines(table, 7), std::invalid_argument);
   table.entries.pop_back();
   EXPECT_THROW(source_lines(table, 1), std::invalid_argument);

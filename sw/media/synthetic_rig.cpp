@@ -1,4 +1,4 @@
-#include "calib/synthetic_rig.h"
+#include "sw/media/synthetic_rig.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,8 +12,16 @@
 
 #include "calib/split_mix.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::media {
 
+using calib::CameraModel;
+using calib::GridPair;
+using calib::GridShape;
+using calib::kSplitMixStep;
+using calib::mixed;
+using calib::Rectification;
+using calib::Rig;
+using calib::SplitMix;
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -68,7 +76,7 @@ std::int64_t below(double value) {
 // A random value of 0..1 at a point of a lattice.
 double lattice(std::uint64_t seed, std::int64_t column, std::int64_t row) {
   const std::uint64_t position = static_cast<std::uint64_t>(row) << 32U ^ static_cast<std::uint64_t>(column);
-  return unit(mixed(seed + position * kSplitMixStep));
+  return calib::unit(mixed(seed + position * kSplitMixStep));
 }
 
 double smooth(double part) { return part * part * (3 - 2 * part); }
@@ -279,7 +287,7 @@ Scene random_scene(std::uint64_t seed, const Rig& rig) {
 
 // The inner corners and the corners at the border of the black and white squares.
 std::vector<Vector3d> square_corners(const GridShape& shape) {
-  std::vector<Vector3d> points = corner_points({shape.columns + 2, shape.rows + 2, shape.square_mm});
+  std::vector<Vector3d> points = calib::corner_points({shape.columns + 2, shape.rows + 2, shape.square_mm});
   for (Vector3d& point : points) point -= Vector3d(shape.square_mm, shape.square_mm, 0);
   return points;
 }
@@ -469,7 +477,7 @@ SyntheticRig::Pair SyntheticRig::grid_view(const GridShape& shape, int number) c
 
 GridPair SyntheticRig::grid_corners(const GridShape& shape, int number) const {
   const Eigen::Isometry3d pose = grid_pose(seed_, rig_, shape, number);
-  std::vector<Vector3d> points = corner_points(shape);
+  std::vector<Vector3d> points = calib::corner_points(shape);
   for (Vector3d& point : points) point = pose * point;
   return seen(rig_, points).value();
 }
@@ -497,7 +505,7 @@ std::optional<Vector2d> SyntheticRig::match(const Vector2d& left_pixel) const {
 
 std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectification& rectification,
                                            int disparity_offset) const {
-  const SourcePixels sources(calibrated.left, rectification.r1, rectification.p1);
+  const calib::SourcePixels sources(calibrated.left, rectification.r1, rectification.p1);
   std::vector<float> result;
   result.reserve(static_cast<std::size_t>(rig_.width) * static_cast<std::size_t>(rig_.height));
   for (int v = 0; v < rig_.height; ++v) {
@@ -505,7 +513,7 @@ std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectific
       const auto left = sources.at({static_cast<double>(u) + disparity_offset, v});
       const auto right = left ? match(*left) : std::nullopt;
       const double found =
-          right ? u - rectified_pixel(calibrated.right, rectification.r2, rectification.p2, *right).x()
+          right ? u - calib::rectified_pixel(calibrated.right, rectification.r2, rectification.p2, *right).x()
                 : std::numeric_limits<double>::quiet_NaN();
       result.push_back(static_cast<float>(found));
     }
@@ -513,4 +521,14 @@ std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectific
   return result;
 }
 
-}  // namespace stereotlm::calib
+Truth truth_of(const std::vector<float>& disparity, int width, int disparities) {
+  const int scale = 255 / disparities;
+  Truth truth = {GrayImage(width, static_cast<int>(disparity.size()) / width), static_cast<double>(scale)};
+  std::transform(disparity.begin(), disparity.end(), truth.grey.pixels.begin(), [scale](float each) {
+    const double level = std::floor(double{each} * scale + 0.5);
+    return static_cast<std::uint8_t>(level > 0 && level <= 255 ? level : 0);  // 0 for NaN too
+  });
+  return truth;
+}
+
+}  // namespace stereotlm::media

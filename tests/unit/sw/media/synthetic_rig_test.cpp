@@ -1,4 +1,4 @@
-#include "calib/synthetic_rig.h"
+#include "sw/media/synthetic_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,16 @@
 #include <stdexcept>
 #include <vector>
 
-// calibrate_test.cpp recovers the rig and the disparities from the pictures.
-namespace stereotlm::calib {
+// tests/unit/calib/calibrate_test.cpp recovers the rig and the disparities from the pictures.
+namespace stereotlm::media {
 namespace {
 
+using calib::GridPair;
+using calib::GridShape;
+using calib::Rectification;
+using calib::Rig;
+using calib::seen_by;
+using calib::SourcePixels;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -192,5 +198,14 @@ TEST(SyntheticRig, HasTheDisparityOfARecoveredCalibrationWithAnOffset) {
   EXPECT_GT(found, 3000);
 }
 
+TEST(Truth, HasAsManyLevelsADisparityAsAPictureAllows) {
+  const Truth truth = truth_of({0.2F, 1.5F, std::nanf(""), 64, 84.9F, -1}, 3, 80);
+  EXPECT_EQ(truth.scale, 3);
+  EXPECT_EQ(truth.grey.width, 3);
+  EXPECT_EQ(truth.grey.height, 2);
+  EXPECT_EQ(truth.grey.pixels, (std::vector<std::uint8_t>{1, 5, 0, 192, 255, 0}));
+  EXPECT_EQ(truth_of({86}, 1, 80).grey.pixels.front(), 0);
+}
+
 }  // namespace
-}  // namespace stereotlm::calib
+}  // namespace stereotlm::media

@@ -8,8 +8,9 @@
 
 #include "calib/rig.h"
 #include "models/kernels/gray_image.h"
+#include "sw/media/load.h"
 
-namespace stereotlm::calib {
+namespace stereotlm::media {
 
 namespace made_rig {
 struct View;  // the scene, and the cameras
@@ -27,7 +28,7 @@ class SyntheticRig {
   // `width` and `height`: of the pictures, at least one pixel.
   SyntheticRig(std::uint64_t seed, int width, int height);
 
-  const Rig& rig() const { return rig_; }
+  const calib::Rig& rig() const { return rig_; }
 
   struct Pair {
     kernels::GrayImage left;
@@ -39,9 +40,9 @@ class SyntheticRig {
   // degrees, and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate
   // the rig. `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board,
   // such as pictures of a few rows.
-  Pair grid_view(const GridShape& shape, int number) const;
+  Pair grid_view(const calib::GridShape& shape, int number) const;
   // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
-  GridPair grid_corners(const GridShape& shape, int number) const;
+  calib::GridPair grid_corners(const calib::GridShape& shape, int number) const;
 
   // The pictures of the scene.
   Pair scene() const;
@@ -60,13 +61,17 @@ class SyntheticRig {
   // Matches are found with rig(), in the pictures of the cameras. `calibrated` and `rectification` only map
   // positions between these pictures and the rectified ones. So `calibrated` may be a rig that was fitted to
   // pictures of rig(). Throws as rectified_pixel() does.
-  std::vector<float> disparity(const Rig& calibrated, const Rectification& rectification,
+  std::vector<float> disparity(const calib::Rig& calibrated, const calib::Rectification& rectification,
                                int disparity_offset) const;
 
  private:
   std::uint64_t seed_;
-  Rig rig_;
+  calib::Rig rig_;
   std::shared_ptr<const made_rig::View> view_;
 };
 
-}  // namespace stereotlm::calib
+// Disparities of pictures `width` pixels wide as ground truth, for a board with this number of `disparities`:
+// with as many grey levels per disparity as 255 levels allow. A disparity beyond them is unknown.
+Truth truth_of(const std::vector<float>& disparity, int width, int disparities);
+
+}  // namespace stereotlm::media
