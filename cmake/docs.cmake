@@ -19,7 +19,7 @@ set(DOXYGEN_FILTER_PATTERNS
 set(DOXYGEN_EXCLUDE_PATTERNS */fpga/fast/* */fpga/record/* */core_control.h */core_stepper.h
   */core_datapath.h */frame_run.h */host_port.h */lane_control.h */match_control.h */result_control.h
   */port_cycles.h */blank_matcher.h */dma_channel.h */posted_writes.h */traffic_control.h
-  */kernels/column_*.h */kernels/cost_columns.h */kernels/correlation_search.h */kernels/simd.h
+  */kernels/column_*.h */kernels/cost_columns.h */kernels/correlation_matcher.h */kernels/simd.h
   */trace_records.h */timeline_records.h)
 set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
 set(DOXYGEN_HAVE_DOT NO)

@@ -13,12 +13,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "sw" / "report" / "plots"))
-import style  # noqa: E402
-from points import Points  # noqa: E402
-from style import (BLACK, BLUE, GRAY, GREEN, ORANGE, PINK, SKY, VERMILION, bound,  # noqa: E402, F401
-                   encoded)
+from figures import (BLACK, BLUE, GRAY, GREEN, LID_OF_X, ORANGE, PINK, SKY, VERMILION,  # noqa: E402, F401
+                     Points, bound, encoded, use_style)
 
-style.use()
+use_style()
 
 # A row that `allocate` prints: banks, allocations, simulated, best rate, its uncertainty (only for a whole
 # computer), its percentage of the best of all, bound, number of allocations that tie, one of them.
@@ -84,7 +82,7 @@ def points(database, **columns):
 def fitting(database):
     """The hashes of the points that fit into their FPGA, by the rule of the program's figures."""
     found = Points(database)
-    return set(found.hashes) - {found.hashes[place] for place in found.too_large()}
+    return set(found.table.hash[~found.too_large()])
 
 
 def only(found, **values):

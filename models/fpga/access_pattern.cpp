@@ -13,8 +13,7 @@ AccessPattern::AccessPattern(const FrameGeometry& geometry, PixelCache cache)
       words_((static_cast<std::size_t>(geometry.width) + 63) / 64),
       pixels_(words_ * static_cast<std::size_t>(geometry.height)),
       counts_(static_cast<std::size_t>(geometry.height)),
-      needs_all_pixels_(!has_cache_),
-      passes_before_strip_(static_cast<std::size_t>(geometry.strips)) {
+      needs_all_pixels_(!has_cache_) {
   std::vector<std::uint64_t> row_bits(words_);
   std::uint64_t row_count = 0;
   for (int column = 0; column < geometry.width; ++column) {
@@ -115,16 +114,12 @@ void AccessPattern::count() {
   const auto lanes = static_cast<std::size_t>(geometry_.lanes);
   table_accesses_.assign(lanes, 0);
   pixel_accesses_.assign(lanes, 0);
-  std::uint64_t passes = 0;
   for (int strip = 0; strip < geometry_.strips; ++strip) {
-    passes_before_strip_[static_cast<std::size_t>(strip)] = passes;
     for (int k = 0; k < geometry_.slots_per_column; ++k) {
       const int row = geometry_.first_row_of(strip) + k;
       if (!geometry_.is_inside(row)) continue;
-      const std::uint64_t pixels = counts_[static_cast<std::size_t>(row)];
       table_accesses_[static_cast<std::size_t>(k) % lanes] += geometry_.columns_per_strip();
-      pixel_accesses_[static_cast<std::size_t>(k) % lanes] += pixels;
-      passes += geometry_.columns_per_strip() - pixels;
+      pixel_accesses_[static_cast<std::size_t>(k) % lanes] += counts_[static_cast<std::size_t>(row)];
     }
   }
 }
@@ -156,34 +151,6 @@ void AccessPattern::set_slots() const {
     for (; differing != 0; differing &= differing - 1)
       changes_.push_back(first + static_cast<std::uint64_t>(__builtin_ctzll(differing)));
   }
-}
-
-std::uint64_t AccessPattern::passes_before(std::uint64_t slots) const {
-  const auto slots_per_column = static_cast<std::uint64_t>(geometry_.slots_per_column);
-  const std::uint64_t columns = slots / slots_per_column;
-  const std::uint64_t strip = columns / geometry_.columns_per_strip();
-  if (strip == static_cast<std::uint64_t>(geometry_.strips)) return table_accesses() - pixel_accesses();
-  std::uint64_t passes = passes_before_strip_[strip];
-  if (needs_all_pixels_) return passes;
-  for (int k = 0; k < geometry_.slots_per_column; ++k) {
-    const int row = geometry_.first_row_of(static_cast<int>(strip)) + k;
-    if (!geometry_.is_inside(row)) continue;
-    const bool is_in_last_column = static_cast<std::uint64_t>(k) < slots % slots_per_column;
-    const std::uint64_t of_row = columns % geometry_.columns_per_strip() + std::uint64_t{is_in_last_column};
-    passes += of_row - accesses_of_row(row, of_row);
-  }
-  return passes;
-}
-
-// The number of the first `columns` pixels of a row that are accessed.
-std::uint64_t AccessPattern::accesses_of_row(int row, std::uint64_t columns) const {
-  const std::uint64_t* const bits = pixels_of_row(row);
-  std::uint64_t accesses = 0;
-  for (std::size_t word = 0; word < columns / 64; ++word)
-    accesses += static_cast<std::uint64_t>(__builtin_popcountll(bits[word]));
-  if (columns % 64 == 0) return accesses;
-  const std::uint64_t rest = bits[columns / 64] << (64 - columns % 64);
-  return accesses + static_cast<std::uint64_t>(__builtin_popcountll(rest));
 }
 
 std::uint64_t AccessPattern::uniform_until(std::uint64_t slot) const {

@@ -50,8 +50,6 @@ class AccessPattern {
     return shift == 0 ? words[0] : words[0] >> shift | words[1] << (64 - shift);
   }
 
-  // The number of slots inside the image that do not access it, among the first `slots` slots of a frame.
-  std::uint64_t passes_before(std::uint64_t slots) const;
   // Numbers of slots of a frame that lie inside the image, and that access their pixel: in a lane, and in
   // all.
   std::uint64_t table_accesses(int lane) const { return table_accesses_[static_cast<std::size_t>(lane)]; }
@@ -70,7 +68,6 @@ class AccessPattern {
   static std::uint64_t sum_of(const std::vector<std::uint64_t>& counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   }
-  std::uint64_t accesses_of_row(int row, std::uint64_t columns) const;
   void set_all(std::uint64_t* row_bits) const;
   bool are_own_sources(int row, const std::uint32_t* entries) const;
   bool set_row(int row, const std::uint32_t* entries);
@@ -86,7 +83,6 @@ class AccessPattern {
   std::vector<std::uint64_t> counts_;  // [row]: their number
   bool needs_all_pixels_ = false;
   bool is_identity_ = true;
-  std::vector<std::uint64_t> passes_before_strip_;  // [strip]: slots inside the image that do not access it
   // These four are empty until the first query: few frames need them.
   mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
   mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before

@@ -35,12 +35,6 @@ void CoreControl::skip_waiting(std::uint64_t cycles) {
   match_.skip_folds(cycles);
 }
 
-void CoreControl::correct_passes(std::size_t lane, std::uint64_t cycles) {
-  PortCycles& pixel = cycles_[pixel_port(lane)];
-  pixel.subtract(Intent::kRequest, true, cycles);
-  pixel.add(Intent::kPass, false, cycles);
-}
-
 CoreControl::Counts CoreControl::counts() const { return {cycles_.begin(), cycles_.end() - 1}; }
 
 CoreControl::Counts CoreControl::difference(const Counts& after, const Counts& before) {

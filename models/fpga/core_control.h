@@ -72,9 +72,6 @@ class CoreControl {
     host_cycles().subtract(Intent::kIdle, false, cycles);
     host_cycles().add(Intent::kRequest, granted, cycles);
   }
-  // Recounts `cycles` cycles of this frame in which the pixel port of a lane was counted as granted, but
-  // passed a slot.
-  void correct_passes(std::size_t lane, std::uint64_t cycles);
   // See LaneControl.
   void correct_marks(std::size_t lane, std::uint64_t marks) { lanes_[lane].correct_marks(marks); }
 

@@ -74,11 +74,8 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // Frames that were stepped cycle by cycle, at any fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
 
-  // Advances control() to the present, for observers of a running frame. Two counts are provisional until a
-  // burst contends for a bank of the frame, or the frame ends:
-  // - A slot that an uncontended pixel port passes without access counts as a grant and a read.
-  //   FrameRun::waits() shows a request.
-  // - Words of a burst for an uncontended bank count as idle cycles of the host port.
+  // Advances control() to the present, for observers of a running frame. Words of a burst for an uncontended
+  // bank count as idle cycles of the host port until the frame ends.
   void catch_up();
 
  private:

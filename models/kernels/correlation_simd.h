@@ -2,7 +2,7 @@
 
 #include "models/kernels/simd_vectors.h"
 
-// The loops of CorrelationSearch (Simd).
+// The loops of CorrelationMatcher (Simd).
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 

@@ -5,14 +5,24 @@
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 namespace {
 
+// A cost that takes the pixels as they are.
+template <class KeysOfCost>
+struct PackedCost {
+  using Keys = KeysOfCost;
+  static constexpr bool kUnpacks = false;
+
+  static void prepare(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/) {}
+  static const std::int16_t* pixels(const MatchSide& side) { return side.pixels; }
+};
+
 // Sum of absolute differences.
 template <class Keys>
-struct SadCost : KeyedCost<Keys> {
+struct SadCost : PackedCost<Keys> {
   using Sum = Int16s;
   static constexpr std::ptrdiff_t kPixelLanes = kLanes;
   static constexpr std::ptrdiff_t kSumLanes = kLanes;
 
-  SadCost(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, int /*first*/) {}
+  explicit SadCost(const MatchMemory& /*memory*/) {}
   static Int16s right(const std::int16_t* pixels) { return load<Int16s>(pixels); }
   static Sum change(Int16s right_pixels, const std::int16_t* left_pixels) {
     const auto a = reinterpret_cast<Bytes>(right_pixels);
@@ -28,16 +38,17 @@ MatchLoops sad_loops(int window) {
 
 // Sum of squared differences. The pixels are multiplied by kFactor first, so that the sums have the scale of
 // the keys.
-template <class Keys, int kFactor>
-struct SsdCost : KeyedCost<Keys> {
+template <class KeysOfCost, int kFactor>
+struct SsdCost {
+  using Keys = KeysOfCost;
   static_assert(kFactor * kFactor == Keys::kSumScale);
   using Sum = Int32Pair;
   static constexpr std::ptrdiff_t kPixelLanes = 2 * kLanes;
   static constexpr std::ptrdiff_t kSumLanes = 2 * kLanes;
   static constexpr bool kUnpacks = true;
 
-  SsdCost(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, int /*first*/) {}
-  static void prepare(const MatchPlan& plan, const MatchMemory& memory, bool /*match*/) {
+  explicit SsdCost(const MatchMemory& /*memory*/) {}
+  static void prepare(const MatchPlan& plan, const MatchMemory& memory) {
     const int positions = plan.columns + plan.window - 1;
     unpack<kFactor, kFactor>(memory.right.pixels, positions, memory.right.unpacked);
     unpack<kFactor, kFactor>(memory.left.pixels, positions + plan.disparities - 1, memory.left.unpacked);
@@ -122,7 +133,7 @@ Bytes set_bits_of_planes(const Bytes* planes) {
 }
 
 template <class Keys, int kPlanes>
-struct CensusCost : KeyedCost<Keys> {
+struct CensusCost : PackedCost<Keys> {
   using Sum = Int16s;
   static constexpr std::ptrdiff_t kPixelLanes = kLanes;
   static constexpr std::ptrdiff_t kSumLanes = kLanes;
@@ -131,7 +142,7 @@ struct CensusCost : KeyedCost<Keys> {
     Bytes planes[kPlanes];
   };
 
-  CensusCost(const MatchPlan& /*plan*/, const MatchMemory& memory, int /*first*/)
+  explicit CensusCost(const MatchMemory& memory)
       : right_stride_(memory.right.stride), left_stride_(memory.left.stride) {}
   Right right(const std::int16_t* pixels) const {
     Right right;

@@ -4,8 +4,8 @@
 
 namespace stereotlm::kernels::STEREOTLM_SIMD {
 
-// A Key is the score of a candidate, with as much of its disparity as fits. Kept holds what is known about
-// the candidates of one group of disparities, Best the same for several groups.
+// A Key is the score of a candidate, with as much of its disparity as fits. Best is the best key of several
+// groups of disparities.
 
 // The largest window sums that fit into NarrowKeys and into WideKeys.
 constexpr int kLargestNarrowSum = 16383;
@@ -17,7 +17,6 @@ struct NarrowKeys {
   static constexpr int kGroup = 4;
   static constexpr int kScale = 4;
   using Key = Int16s;
-  using Kept = Key;
   struct Best {
     Int16s key;
     Int16s group;
@@ -26,8 +25,7 @@ struct NarrowKeys {
   static Key without_sum(int disparity) { return int16s(-32768 + disparity % kGroup); }
   static void add(Key& key, Int16s column_sum) { key += column_sum; }
   static Key none() { return int16s(32767); }
-  static Kept only(Key key) { return key; }
-  static Kept best_of(Kept a, Key b) { return smaller(a, b); }
+  static Key best_of(Key a, Key b) { return smaller(a, b); }
   // Returns none() in the lanes in which `outside` is the largest value. In all others it is the smallest.
   static Key unless(Int16s outside, Key key) { return larger(key, outside); }
   static Best best_of_none() { return {none(), Int16s{}}; }
@@ -37,7 +35,7 @@ struct NarrowKeys {
     const auto smaller_sum = (key & -kGroup) > other.key;
     return {smaller_sum ? other.key : key, smaller_sum ? other.group : best.group};
   }
-  static Best better(const Best& best, Kept kept, int group) { return better(best, {kept, int16s(group)}); }
+  static Best better(const Best& best, Key key, int group) { return better(best, {key, int16s(group)}); }
   // Loads the best keys, each from the lane before; none() in the lanes in which `outside` is the largest
   // value.
   static Best load_moved(const Best* best, Int16s outside) {
@@ -54,7 +52,6 @@ struct WideKeys {
   static constexpr int kScale = 1;       // of column sums of 16 bits
   static constexpr int kSumScale = 256;  // of column sums of 32 bits
   using Key = Int32Pair;
-  using Kept = Key;
   using Best = Key;
 
   static Key without_sum(int disparity) { return {int32s(disparity), int32s(disparity)}; }
@@ -67,16 +64,13 @@ struct WideKeys {
     key.odd += column_sum.odd;
   }
   static Key none() { return {int32s(0x7FFF0000), int32s(0x7FFF0000)}; }
-  static Kept only(const Key& key) { return key; }
-  static Kept best_of(const Kept& a, const Key& b) {
-    return {smaller(a.even, b.even), smaller(a.odd, b.odd)};
-  }
+  static Key best_of(const Key& a, const Key& b) { return {smaller(a.even, b.even), smaller(a.odd, b.odd)}; }
   static Key unless(Int16s outside, const Key& key) {
     return {larger(key.even, even_lanes(outside) << 16), larger(key.odd, odd_lanes(outside) << 16)};
   }
   static Best best_of_none() { return none(); }
   static Best better(const Best& best, const Best& other) { return best_of(best, other); }
-  static Best better(const Best& best, const Kept& kept, int /*group*/) { return best_of(best, kept); }
+  static Best better(const Best& best, const Key& key, int /*group*/) { return best_of(best, key); }
   static Best load_moved(const Best* best, Int16s outside) {
     const auto* lanes = reinterpret_cast<const std::int32_t*>(best);
     return unless(outside, {load<Int32s>(lanes + kLanes / 2 - 1), best->even});
@@ -102,8 +96,8 @@ struct WideGroupKeys : WideKeys {
     return {{even ? other.key.even : best.key.even, odd ? other.key.odd : best.key.odd},
             join_lanes(even, odd) ? other.group : best.group};
   }
-  static Best better(const Best& best, const Kept& kept, int group) {
-    return better(best, {kept, int16s(group)});
+  static Best better(const Best& best, const Key& key, int group) {
+    return better(best, {key, int16s(group)});
   }
   static Best load_moved(const Best* best, Int16s outside) {
     return {WideKeys::load_moved(&best->key, outside),

@@ -8,18 +8,15 @@ namespace stereotlm::kernels::STEREOTLM_SIMD {
 // position; a row adds the pixels that enter at the bottom and subtracts those that leave at the top. Along
 // the row a window sum gains the column sum that enters and loses the one that leaves.
 //
-// A Cost is made from the MatchPlan, the MatchMemory and the first disparity of a group. It has:
-//   Keys                      how candidates are compared (frame_simd_keys.h)
-//   kGroup                    the number of disparities that are matched together
-//   kPixelLanes, kSumLanes    lanes of the pixels and of a column sum at one position
-//   kUnpacks, kHasStatistics  whether prepare() fills `unpacked`; `columns` and `windows`, of MatchSide
-//   pixels(side)              the pixels of a side that right() and change() take
-//   Sum                       a column sum, or its change
-//   WindowSum, start(d), add(WindowSum&, Sum)    start(d): the empty sum of disparity d
-//   right(pixels)             loads the right pixels at a position
-//   change(right, pixels)     the change of a column sum. `right`: from right(); `pixels`: of the left side
-//   score(WindowSum, j)       the input of right_key(score, j), left_key(score, j); j: place in the group
-//   next()                    to be called between two windows
+// A Cost is made from the MatchMemory. It has:
+//   Keys                    how candidates are compared (frame_simd_keys.h)
+//   kPixelLanes, kSumLanes  lanes of the pixels and of a column sum at one position
+//   kUnpacks                whether prepare() fills MatchSide::unpacked
+//   pixels(side)            the pixels of a side that right() and change() take
+//   Sum                     a column sum, or its change
+//   right(pixels)           loads the right pixels at a position
+//   change(right, pixels)   the change of a column sum. `right`: from right(); `pixels`: of the left side
+// Each disparity is part of its key from the start, so that a window sum is the key of both sides.
 
 // The column sums of kCount neighbouring disparities, which lie side by side for each position. next()
 // advances the pointers to the next position. Nothing points to this object, so that the compiler knows that
@@ -60,7 +57,6 @@ struct Group {
   using Keys = typename Cost::Keys;
   using Sum = typename Cost::Sum;
   using Key = typename Keys::Key;
-  using Kept = typename Keys::Kept;
   using Best = typename Keys::Best;
 
   Cost cost;
@@ -70,11 +66,11 @@ struct Group {
   Best* left_best;
   std::ptrdiff_t window_begin;  // offset from the sums that enter the window to those that leave it
   int first;                    // first disparity of the group
-  typename Cost::WindowSum windows[kCount];
-  Kept passing[kCount];  // best keys of left windows that larger disparities of the group have yet to reach
+  Key windows[kCount];          // their sums
+  Key passing[kCount];  // best keys of left windows that larger disparities of the group have yet to reach
 
   Group(const MatchPlan& plan, const MatchMemory& memory, int first_disparity, std::int16_t* column_sums)
-      : cost(plan, memory, first_disparity),
+      : cost(memory),
         columns{Cost::pixels(memory.right),
                 Cost::pixels(memory.left) + std::ptrdiff_t{first_disparity} * Cost::kPixelLanes, column_sums},
         outside(memory.outside + first_disparity * kLanes),
@@ -83,7 +79,7 @@ struct Group {
         window_begin(-std::ptrdiff_t{plan.window} * kCount * Cost::kSumLanes),
         first(first_disparity) {
     for (int j = 0; j < kCount; ++j) {
-      windows[j] = cost.start(first + j);
+      windows[j] = Keys::without_sum(first + j);
       passing[j] = Keys::none();
     }
   }
@@ -95,7 +91,7 @@ struct Group {
       const auto right = cost.right(columns.right);
       for (std::ptrdiff_t j = 0; j < kCount; ++j) {
         const auto sum = columns.add(cost, right, j);
-        if constexpr (kToWindows) cost.add(windows[j], sum);
+        if constexpr (kToWindows) Keys::add(windows[j], sum);
       }
       columns.next();
     }
@@ -107,32 +103,26 @@ struct Group {
       const auto right = cost.right(columns.right);
       for (std::ptrdiff_t j = 0; j < kCount; ++j) {
         const auto leaving = load<Sum>(columns.sums + window_begin + j * Cost::kSumLanes);
-        cost.add(windows[j], columns.add(cost, right, j) - leaving);
+        Keys::add(windows[j], columns.add(cost, right, j) - leaving);
       }
       columns.next();
-      typename Cost::Score scores[kCount];
-      for (std::ptrdiff_t j = 0; j < kCount; ++j) scores[j] = cost.score(windows[j], j);
       if (kRightBased) {
-        Kept best;
+        Key best;
         for (std::ptrdiff_t j = 0; j < kCount; ++j) {
-          Key key = cost.right_key(scores[j], j);
+          Key key = windows[j];
           if (kOutside == Outside::kSome) key = Keys::unless(load<Int16s>(outside + j * kLanes), key);
-          best = j == 0 ? Keys::only(key) : Keys::best_of(best, key);
+          best = j == 0 ? key : Keys::best_of(best, key);
         }
         if (kOutside == Outside::kAllOrNone) best = Keys::unless(load<Int16s>(outside), best);
         *right_best = Keys::better(*right_best, best, first);
         ++right_best;
         outside += kLanes;
       }
-      const Key smallest = cost.left_key(scores[0], 0);
-      *left_best = Keys::better(
-          *left_best, kCount > 1 ? Keys::best_of(passing[0], smallest) : Keys::only(smallest), first);
+      *left_best =
+          Keys::better(*left_best, kCount > 1 ? Keys::best_of(passing[0], windows[0]) : windows[0], first);
       ++left_best;
-      for (std::ptrdiff_t j = 1; j < kCount; ++j) {
-        const Key key = cost.left_key(scores[j], j);
-        passing[j - 1] = j + 1 < kCount ? Keys::best_of(passing[j], key) : Keys::only(key);
-      }
-      cost.next();
+      for (std::ptrdiff_t j = 1; j < kCount; ++j)
+        passing[j - 1] = j + 1 < kCount ? Keys::best_of(passing[j], windows[j]) : windows[j];
     }
   }
 
@@ -188,19 +178,20 @@ void visit_groups(const MatchPlan& plan, const MatchMemory& memory, const Visit&
   const std::ptrdiff_t stride = (plan.columns + plan.window) * Cost::kSumLanes;
   // A sum of zero stands before the sums of each disparity.
   std::int16_t* column_sums = memory.column_sums;
+  constexpr int kGroup = Cost::Keys::kGroup;
   int first = 0;
-  for (; first + Cost::kGroup <= plan.disparities; first += Cost::kGroup) {
-    visit(Count<Cost::kGroup>{}, first, column_sums + Cost::kGroup * Cost::kSumLanes);
-    column_sums += Cost::kGroup * stride;
+  for (; first + kGroup <= plan.disparities; first += kGroup) {
+    visit(Count<kGroup>{}, first, column_sums + kGroup * Cost::kSumLanes);
+    column_sums += kGroup * stride;
   }
   const int rest = plan.disparities - first;
-  visit_rest<Cost::kGroup - 1>(rest, first, column_sums + rest * Cost::kSumLanes, visit);
+  visit_rest<kGroup - 1>(rest, first, column_sums + rest * Cost::kSumLanes, visit);
 }
 
 // MatchLoops::add_row and match_row.
 template <class Cost>
 void add_row_with(const MatchPlan& plan, const MatchMemory& memory) {
-  Cost::prepare(plan, memory, false);
+  Cost::prepare(plan, memory);
   visit_groups<Cost>(plan, memory, [&](auto count, int first, std::int16_t* column_sums) {
     Group<Cost, decltype(count)::value> group(plan, memory, first, column_sums);
     group.template enter<false>(plan.columns + plan.window - 1);
@@ -210,7 +201,7 @@ void add_row_with(const MatchPlan& plan, const MatchMemory& memory) {
 template <class Cost>
 void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
   using Keys = typename Cost::Keys;
-  Cost::prepare(plan, memory, true);
+  Cost::prepare(plan, memory);
   auto* right = reinterpret_cast<typename Keys::Best*>(memory.right.best);
   auto* left = reinterpret_cast<typename Keys::Best*>(memory.left.best);
   const int left_positions = plan.columns + plan.disparities - 1;
@@ -239,39 +230,9 @@ void match_row_with(const MatchPlan& plan, const MatchMemory& memory) {
 
 template <class Cost>
 constexpr MatchLoops loops_of() {
-  return {int{Cost::kSumLanes / kLanes},
-          static_cast<int>(sizeof(typename Cost::Keys::Best) / kBytes),
-          Cost::kUnpacks,
-          Cost::kHasStatistics,
-          add_row_with<Cost>,
-          match_row_with<Cost>};
+  return {int{Cost::kSumLanes / kLanes}, static_cast<int>(sizeof(typename Cost::Keys::Best) / kBytes),
+          Cost::kUnpacks, add_row_with<Cost>, match_row_with<Cost>};
 }
-
-// The parts that the costs have in common.
-
-// Costs whose column sums have 16 bits: each disparity is part of the key from the start, so that the window
-// sum is the key of both sides.
-template <class KeysOfCost>
-struct KeyedCost {
-  using Keys = KeysOfCost;
-  using WindowSum = typename Keys::Key;
-  using Score = WindowSum;
-  static constexpr int kGroup = Keys::kGroup;
-  static constexpr bool kUnpacks = false;
-  static constexpr bool kHasStatistics = false;
-
-  static WindowSum start(int disparity) { return Keys::without_sum(disparity); }
-  template <class Sum>
-  static void add(WindowSum& key, const Sum& sum) {
-    Keys::add(key, sum);
-  }
-  static const Score& score(const WindowSum& key, std::ptrdiff_t /*j*/) { return key; }
-  static const WindowSum& right_key(const Score& key, std::ptrdiff_t /*j*/) { return key; }
-  static const WindowSum& left_key(const Score& key, std::ptrdiff_t /*j*/) { return key; }
-  static void next() {}
-  static void prepare(const MatchPlan& /*plan*/, const MatchMemory& /*memory*/, bool /*match*/) {}
-  static const std::int16_t* pixels(const MatchSide& side) { return side.pixels; }
-};
 
 // Returns kScale * (lower byte - upper byte) of each lane. The bytes must be small enough for 16 bits.
 template <int kScale>

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 
 #include "models/checked.h"
 #include "models/kernels/limits.h"
-#include "models/kernels/words.h"
 
 namespace stereotlm::kernels {
 namespace {
@@ -35,7 +33,11 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
   if (windows_across_ < 1 || windows_down_ < 1) return;
   // No right window has more candidates.
   plan_.disparities = std::min(plan_.disparities, windows_across_);
-  choose_loops(cost, simd);
+  if (cost.kind == CostKind::kZncc) {
+    correlations_.emplace(width, height, window, plan_.disparities, simd);
+    return;
+  }
+  choose_loops(cost);
   choose_bands();
   plan_.first_outside = windows_across_ - (segments_ - 1) * plan_.columns;
 
@@ -64,13 +66,12 @@ ImageMatcher::ImageMatcher(int width, int height, int window, int disparities, b
                              static_cast<std::size_t>(plan_.columns + window) *
                              static_cast<std::size_t>(loops_.sum_vectors) * lanes);
   const auto side = [this](MatchedImage& its) -> MatchSide {
-    return {its.pixel_vectors.data(),     pixel_stride(its),           its.best.data(), its.unpacked.data(),
-            its.column_statistics.data(), its.window_statistics.data()};
+    return {its.pixel_vectors.data(), pixel_stride(its), its.best.data(), its.unpacked.data()};
   };
   memory_ = {side(right_), side(left_), outside_.data(), band_begins_.data(), column_sums_.data()};
 }
 
-void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
+void ImageMatcher::choose_loops(const MatchingCost& cost) {
   switch (cost.kind) {
     case CostKind::kSad:
       loops_ = simd_.sad_loops(plan_.window);
@@ -79,13 +80,11 @@ void ImageMatcher::choose_loops(const MatchingCost& cost, const Simd& simd) {
       loops_ = simd_.ssd_loops(plan_.window);
       return;
     case CostKind::kZncc:
-      loops_ = simd_.zncc_loops(plan_.window);
-      exact_.emplace(width_, height_, plan_.window, plan_.disparities, simd);
       return;
     case CostKind::kCensus:
       pixel_bytes_ = cost.pixel_bytes();
       loops_ = simd_.census_loops(pixel_bytes_, plan_.window);
-      for (MatchedImage* side : {&left_, &right_}) side->census.emplace(width_, height_, cost, simd);
+      for (MatchedImage* side : {&left_, &right_}) side->census.emplace(width_, height_, cost, simd_);
   }
 }
 
@@ -123,10 +122,6 @@ void ImageMatcher::prepare(MatchedImage& side, int positions, int windows) {
   side.pixel_vectors = vectors(rounded_up(positions, 8), pixel_bytes_);
   side.best = vectors(windows, loops_.best_vectors);
   if (loops_.unpacks) side.unpacked = vectors(positions, 2);
-  if (loops_.has_statistics) {
-    side.column_statistics = vectors(positions, kColumnStatisticsVectors);
-    side.window_statistics = vectors(windows, kWindowStatisticsVectors);
-  }
 }
 
 // The distance from one byte of the pixels to the next in MatchedImage::pixel_vectors, in lanes.
@@ -179,35 +174,13 @@ void ImageMatcher::leave_rows(MatchedImage& side, int step, std::uint8_t* dispar
   }
 }
 
-// Decides the windows that the loops have left undecided.
-void ImageMatcher::decide(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
-                          std::uint8_t* right_disparity) {
-  static_assert(kUndecided == kInvalidDisparity);  // no window is invalid
-  exact_->set_images(left, right);
-  const auto across = static_cast<std::size_t>(windows_across_);
-  for (int row = 0; row < windows_down_; ++row) {
-    const std::ptrdiff_t begin = (std::ptrdiff_t{row} + radius_) * width_ + radius_;
-    std::uint8_t* const left_row = left_disparity + begin;
-    std::uint8_t* const right_row = plan_.right_based ? right_disparity + begin : left_row;
-    if (std::memchr(left_row, kUndecided, across) == nullptr &&
-        std::memchr(right_row, kUndecided, across) == nullptr)
-      continue;
-    exact_->set_row(row);
-    for (int column = 0; column < windows_across_; ++column) {
-      if (left_row[column] == kUndecided) left_row[column] = exact_->left_based(column);
-    }
-    if (!plan_.right_based) continue;
-    for (int column = windows_across_ - 1; column >= 0; --column) {
-      if (right_row[column] == kUndecided) right_row[column] = exact_->right_based(column);
-    }
-  }
-}
-
 void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
                        std::uint8_t* right_disparity) {
   if (windows_across_ < 1 || windows_down_ < 1) return;
+  if (correlations_) {
+    return correlations_->run(left, right, left_disparity, plan_.right_based ? right_disparity : nullptr);
+  }
   column_sums_.fill(0);
-  for (MatchedImage* side : {&left_, &right_}) side->column_statistics.fill(0);
   if (left_.census) {
     left_.census->run(left);
     right_.census->run(right);
@@ -223,7 +196,6 @@ void ImageMatcher::run(const std::uint8_t* left, const std::uint8_t* right, std:
     leave_rows(left_, step, left_disparity);
     if (plan_.right_based) leave_rows(right_, step, right_disparity);
   }
-  if (exact_) decide(left, right, left_disparity, right_disparity);
 }
 
 }  // namespace stereotlm::kernels

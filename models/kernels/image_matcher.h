@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "models/kernels/census.h"
-#include "models/kernels/correlation_search.h"
+#include "models/kernels/correlation_matcher.h"
 #include "models/kernels/matching_cost.h"
 #include "models/kernels/simd.h"
 
@@ -14,7 +14,7 @@ namespace stereotlm::kernels {
 
 // Matches whole rectified and filtered image pairs (contract 1.3, 7.6) with SIMD; used by StereoPipeline. The
 // image is cut into bands of rows, and each band into segments of columns; each lane of a vector matches one
-// segment of one band (MatchPlan).
+// segment of one band (MatchPlan). CorrelationMatcher does the work for the cost `zncc`.
 class ImageMatcher {
  public:
   // Throws std::invalid_argument outside kWindowRule and kDisparitiesRule, or if the cost has problems.
@@ -33,23 +33,19 @@ class ImageMatcher {
     VectorArray rows;           // per band: one row, each pixel paired with the pixel that leaves the window
     VectorArray pixel_vectors;  // these pairs of pixels, as one vector per position
     VectorArray unpacked;       // MatchSide::unpacked
-    VectorArray column_statistics;
-    VectorArray window_statistics;
-    VectorArray best;               // per position: the best keys, then the disparities
+    VectorArray best;           // per position: the best keys, then the disparities
     std::vector<std::uint8_t> out;  // per band: one row of disparities
     int positions = 0;
     std::optional<CensusTransform> census;
   };
 
-  void choose_loops(const MatchingCost& cost, const Simd& simd);
+  void choose_loops(const MatchingCost& cost);
   void choose_bands();
   void prepare(MatchedImage& side, int positions, int windows);
   int pixel_stride(const MatchedImage& side) const;
   void enter_rows(MatchedImage& side, const std::uint8_t* image, int step);
   void enter_rows(MatchedImage& side, const std::uint8_t* plane, int step, std::int16_t* pixel_vectors);
   void leave_rows(MatchedImage& side, int step, std::uint8_t* disparity);
-  void decide(const std::uint8_t* left, const std::uint8_t* right, std::uint8_t* left_disparity,
-              std::uint8_t* right_disparity);
 
   int width_;
   int height_;
@@ -71,7 +67,7 @@ class ImageMatcher {
   VectorArray column_sums_;
   std::vector<std::uint8_t> no_row_;  // a row of zeros that stands for the rows above the image
   MatchMemory memory_;
-  std::optional<CorrelationSearch> exact_;  // for the cost that leaves windows undecided
+  std::optional<CorrelationMatcher> correlations_;  // with the cost `zncc`, instead of the loops
 };
 
 }  // namespace stereotlm::kernels

@@ -69,10 +69,6 @@ struct MatchSide {
   std::int16_t* best = nullptr;
   // [pixels], with MatchLoops::unpacks: the pixels as numbers of 16 bits, in two vectors.
   std::int16_t* unpacked = nullptr;
-  // With MatchLoops::has_statistics. `columns`: [pixels], kColumnStatisticsVectors vectors each, all 0 before
-  // the first row. `windows`: [windows], kWindowStatisticsVectors vectors each.
-  std::int16_t* columns = nullptr;
-  std::int16_t* windows = nullptr;
 };
 struct MatchMemory {
   MatchSide right;
@@ -86,19 +82,12 @@ struct MatchMemory {
   // first row.
   std::int16_t* column_sums = nullptr;
 };
-inline constexpr int kColumnStatisticsVectors = 4;
-inline constexpr int kWindowStatisticsVectors = 6;
-
-// Stored in place of a disparity that the vector arithmetic cannot decide. ImageMatcher then compares the
-// candidates of the window exactly (CorrelationSearch).
-inline constexpr int kUndecided = 255;
 
 // The loops of one cost, and the memory that they need.
 struct MatchLoops {
-  int sum_vectors;      // vectors per position of MatchMemory::column_sums
-  int best_vectors;     // vectors per position of MatchSide::best
-  bool unpacks;         // uses MatchSide::unpacked
-  bool has_statistics;  // uses the statistics of columns and windows
+  int sum_vectors;   // vectors per position of MatchMemory::column_sums
+  int best_vectors;  // vectors per position of MatchSide::best
+  bool unpacks;      // uses MatchSide::unpacked
   // Moves all column sums one row down. To be called for the rows before the first windows are complete.
   void (*add_row)(const MatchPlan& plan, const MatchMemory& memory);
   // Moves one row down and stores the disparities of the row of windows in MatchSide::best, one per lane and
@@ -154,10 +143,9 @@ struct Simd {
   // of the neighbours is the same for all. Reads the rows and writes `out` up to 64 pixels beyond `width`.
   void (*census_row)(const std::int8_t* const* rows, int half, int width, std::uint8_t* const* out);
 
-  // The loops of each cost for windows of `window` x `window` pixels. Only zncc_loops() give kUndecided.
+  // The loops of each cost for windows of `window` x `window` pixels. `zncc` has none: CorrelationMatcher.
   MatchLoops (*sad_loops)(int window);
   MatchLoops (*ssd_loops)(int window);
-  MatchLoops (*zncc_loops)(int window);
   MatchLoops (*census_loops)(int bytes, int window);  // `bytes` of a pixel: 1, 3 or 6
 
   // The loops over one column of the matcher. Arrays over the disparities d hold `lanes` values, a multiple
@@ -191,7 +179,7 @@ struct Simd {
   void (*filter_column)(const float* columns, std::ptrdiff_t stride, const float* weights, int size, int rows,
                         int shift, std::uint8_t* out);
 
-  // The loops of CorrelationSearch.
+  // The loops of CorrelationMatcher.
   //
   // Adds the sum over the 2 * `pairs` rows of own[row] * rows[row][d] to column[d], then column[d] -
   // leaving[d] to window[d], for `lanes` disparities d, a multiple of kLanePadding.

@@ -143,8 +143,7 @@ void Arbitration::share_banks() {
   shared_banks_.clear();
 }
 
-// Adds the grants of these uncontended ports to the statistics, and moves the orders of their policies. To be
-// called when none of these grants can be retracted any more.
+// Adds the grants of these uncontended ports to the statistics, and moves the orders of their policies.
 void Arbitration::settle(PortMask ports) {
   for_each_port(ports & alone_, [this](Port port) {
     const std::uint64_t grants = std::exchange(alone_grants_[port], 0);

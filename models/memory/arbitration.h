@@ -81,14 +81,6 @@ class Arbitration {
   // The cause of a stall of this port in the cycle in which arbitrate() has returned `granted`: the port that
   // its bank has granted, or another cause.
   std::size_t cause_of(Port port, PortMask granted) const;
-  // Whether the port is the only one on its bank, and the bank has no turnaround. Then each request is
-  // granted in its cycle, as long as no route changes.
-  bool is_alone(Port port) const { return has(alone_, port); }
-  // Subtracts grants of a port that is alone. FastForward counts a grant for each slot of such a pixel port
-  // before it knows which table entries are valid, and then subtracts the grants of the slots that passed. To
-  // be called before the bank is visited, another route changes, or counting ends: at that time the remaining
-  // grants move the state of the bank's policy.
-  void retract_grants(Port port, std::uint64_t grants) { alone_grants_[port] -= grants; }
 
   // The arbiter of a bank, for requests of a port without route. No routed port may request the bank.
   BankArbiter& arbiter(std::size_t bank) { return arbiters_[bank]; }
@@ -110,9 +102,7 @@ class Arbitration {
   // The stalls among the changes, sorted by port, bank and cause.
   std::vector<Stall> stalls_of(const CountChanges& changes) const;
 
-  // The statistics count cycles first_cycle .. end_cycle - 1 only, and are complete after end_counting().
-  // Until then grants of an uncontended port may be retracted. ArbiterStats::uncounted_accesses() is complete
-  // at any time.
+  // The statistics count cycles first_cycle .. end_cycle - 1 only. end_counting() adds the idle cycles.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   ArbiterStats stats(std::size_t bank) const;

@@ -4,13 +4,9 @@ namespace stereotlm::memory {
 
 std::vector<std::string> problems(const SdramTiming& timing) {
   std::vector<std::string> found;
-  const auto check_power = [&](const char* field, int value, const kernels::IntegerRule& rule) {
-    if (!rule.allows(value) || !is_power_of_two(value))
-      found.push_back(rule.problem(field, value) + ", a power of two");
-  };
   kCasLatencyRule.check("cas_latency", timing.cas_latency, found);
-  check_power("row_words", timing.row_words, kRowWordsRule);
-  check_power("internal_banks", timing.internal_banks, kInternalBanksRule);
+  kRowWordsRule.check("row_words", timing.row_words, found);
+  kInternalBanksRule.check("internal_banks", timing.internal_banks, found);
   kRowCyclesRule.check("activate_cycles", timing.activate_cycles, found);
   kRowCyclesRule.check("precharge_cycles", timing.precharge_cycles, found);
   if (!timing.refresh_interval_cycles) return found;

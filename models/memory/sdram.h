@@ -12,14 +12,11 @@
 namespace stereotlm::memory {
 
 inline constexpr kernels::IntegerRule kCasLatencyRule{1, 8};              // cycles
-inline constexpr kernels::IntegerRule kRowWordsRule{16, 65536};           // a power of two
-inline constexpr kernels::IntegerRule kInternalBanksRule{1, 8};           // a power of two
+inline constexpr kernels::IntegerRule kRowWordsRule{16, 65536, 1, true};  // 32-bit words
+inline constexpr kernels::IntegerRule kInternalBanksRule{1, 8, 1, true};
 inline constexpr kernels::IntegerRule kRowCyclesRule{0, 63};              // to activate or to precharge
 inline constexpr kernels::IntegerRule kRefreshIntervalRule{64, 1000000};  // cycles
 inline constexpr kernels::IntegerRule kRefreshCyclesRule{1, 255};         // cycles
-
-// Whether the number is 1, 2, 4, ..
-constexpr bool is_power_of_two(std::int64_t number) { return number > 0 && (number & (number - 1)) == 0; }
 
 // The timing of a bank of SDR SDRAM, in cycles of the core's clock (contract 8.3). The defaults are those of
 // the MT48LC4M32B2 at 40 MHz.

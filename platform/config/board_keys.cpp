@@ -11,6 +11,7 @@
 
 #include "models/area/device.h"
 #include "models/area/pins.h"
+#include "models/capture/capture_config.h"
 #include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
 #include "models/kernels/stereo.h"
@@ -25,102 +26,104 @@ namespace {
 
 using Entry = YamlNode::Entry;
 
-const std::string kRefreshCycles = "refresh_cycles";
+constexpr const char* kRefreshCycles = "refresh_cycles";
 
-// The value of a key's field. The accessors need a board that is not const.
-template <typename Field>
-auto value_of(Field field, const BoardConfig& board) {
-  return *field(const_cast<BoardConfig&>(board));
+int index_in(const std::vector<std::string>& words, const std::string& word) {
+  return static_cast<int>(std::find(words.begin(), words.end(), word) - words.begin());
 }
 
-Key integer(const char* path, int* (*field)(BoardConfig&), std::string meaning, const char* unit,
-            const IntegerRule& rule) {
-  Key made = {path, std::move(meaning), unit, IntegerKey{field}, rule.text(), rule};
-  made.write = [field](const BoardConfig& board) {
-    return YamlNode::plain(std::to_string(value_of(field, board)));
-  };
-  made.read = [field](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-    if (const auto value = values.read_integer(key, entry.value)) *field(board) = *value;
-  };
-  return made;
+// Fields of a board or a bank: functions that return a pointer into their owner.
+template <typename Owner, typename Value>
+auto at(Value Owner::*member) {
+  return [member](auto& owner) { return &(owner.*member); };
 }
-
-// An integer, or a word that stands for no value.
-Key integer_or(const char* none, const char* path, std::optional<int>* (*field)(BoardConfig&),
-               const char* meaning, const char* unit, const IntegerRule& rule) {
-  Key made = {path, meaning, unit, {}, rule.text() + " or " + none, rule};
-  made.no_number = none;
-  made.write = [none, field](const BoardConfig& board) {
-    const std::optional<int> number = value_of(field, board);
-    return number ? YamlNode::plain(std::to_string(*number)) : YamlNode::word(none);
-  };
-  made.read = [none, field](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-    if (entry.value.is(none)) {
-      values.accept(key.path, entry.value.place);
-      *field(board) = std::nullopt;
-    } else if (const auto value = values.read_integer(key, entry.value)) {
-      *field(board) = *value;
+template <typename Section, typename Value>
+auto at(Section BoardConfig::*section, Value Section::*member) {
+  return [section, member](auto& board) { return &((board.*section).*member); };
+}
+template <typename Value>
+auto of_load(Value PciLoadConfig::*member) {
+  return [member](auto& board) { return &(board.pci.load.value().*member); };
+}
+template <typename Value>
+auto of_timing(Value memory::SdramTiming::*member) {
+  return [member](auto& bank) {
+    if constexpr (!std::is_const_v<std::remove_reference_t<decltype(bank)>>) {
+      if (!bank.sdram) bank.sdram.emplace();
     }
+    return &((*bank.sdram).*member);
   };
-  return made;
 }
 
-Key decimal(const char* path, double* (*field)(BoardConfig&), const char* meaning, const char* unit,
-            double min, double max) {
-  const DecimalKey kind = {min, max, field};
-  Key made = {path, meaning, unit, kind, fmt::format("{}..{}", min, max), std::nullopt};
-  made.write = [field](const BoardConfig& board) {
-    return YamlNode::plain(decimal_text(value_of(field, board)));
-  };
-  made.read = [kind](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-    const auto value = decimal_of(entry.value);
-    if (!value || !kind.allows(*value)) {
-      const char* const type = value ? "" : "not a decimal number (such as 29.97, not in quotes); ";
-      return values.report(key.path, entry.value, type + key.rule_text);
-    }
-    values.accept(key.path, entry.value.place);
-    *kind.field(board) = *value;
-  };
-  return made;
-}
+using Words = std::vector<std::string>;
 
-// A key of one of a few words. The field is an enumeration, whose values are in the order of the words, or
-// the word itself.
+// The value of a field. `words`: those of the key's rule, in the order of an enumeration. The word of an
+// optional integer stands for no value.
 template <typename Field>
-Key word(const char* path, Field field, const char* meaning, const std::vector<std::string>& words) {
-  using Value = std::remove_pointer_t<decltype(field(std::declval<BoardConfig&>()))>;
-  WordKey kind;
-  kind.words = words;
-  if constexpr (std::is_same_v<Value, std::string>) {
-    kind.get = [field](const BoardConfig& board) { return value_of(field, board); };
-    kind.set = [field, words](BoardConfig& board, int index) {
-      *field(board) = words[static_cast<std::size_t>(index)];
-    };
+KeyValue value_in(const Field& field, const Words& words) {
+  if constexpr (std::is_same_v<Field, double> || std::is_same_v<Field, std::string>) {
+    return field;
+  } else if constexpr (std::is_same_v<Field, int>) {
+    return std::int64_t{field};
+  } else if constexpr (std::is_same_v<Field, std::optional<int>>) {
+    return field ? KeyValue(std::int64_t{*field}) : KeyValue(words.front());
   } else {
-    kind.get = [field, words](const BoardConfig& board) {
-      const auto index = static_cast<std::size_t>(value_of(field, board));
-      return index < words.size() ? words[index] : std::to_string(index);
-    };
-    kind.set = [field](BoardConfig& board, int index) { *field(board) = static_cast<Value>(index); };
+    const auto index = static_cast<std::size_t>(field);
+    return index < words.size() ? words[index] : std::to_string(index);
   }
-  Key made = {path, meaning, "", kind, listed(words), std::nullopt};
-  made.write = [kind](const BoardConfig& board) { return YamlNode::word(kind.get(board)); };
-  made.read = [kind](ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-    if (const auto index = values.read_word(key.path, entry.value, kind.words)) kind.set(board, *index);
+}
+
+template <typename Field>
+void set_field(Field& field, const KeyValue& value, const Words& words) {
+  if constexpr (std::is_same_v<Field, double> || std::is_same_v<Field, std::string>) {
+    field = std::get<Field>(value);
+  } else if constexpr (std::is_same_v<Field, int>) {
+    field = static_cast<int>(std::get<std::int64_t>(value));
+  } else if constexpr (std::is_same_v<Field, std::optional<int>>) {
+    const auto* const number = std::get_if<std::int64_t>(&value);
+    field = number != nullptr ? std::optional(static_cast<int>(*number)) : std::nullopt;
+  } else {
+    field = static_cast<Field>(index_in(words, std::get<std::string>(value)));
+  }
+}
+
+template <typename Owner, typename Field>
+Access<Owner> access_to(Field field, const Words& words) {
+  return {[=](const Owner& owner) { return value_in(*field(owner), words); },
+          [=](Owner& owner, const KeyValue& value) { set_field(*field(owner), value, words); }};
+}
+
+ValueRule rule_of(const IntegerRule& integers) { return {integers.text(), integers}; }
+ValueRule rule_of(const IntegerRule& integers, const char* none) {
+  return {integers.text() + " or " + none, integers, {}, {none}};
+}
+ValueRule rule_of(const DecimalRule& decimals) {
+  return {fmt::format("{}..{}", decimals.min, decimals.max), {}, decimals};
+}
+ValueRule rule_of(const Words& words) { return {listed(words), {}, {}, words}; }
+
+// A key whose value is a number or a word.
+template <typename Field>
+Key simple(const char* path, Field field, std::string meaning, const char* unit, ValueRule rule) {
+  Key made = {path, std::move(meaning), unit, std::move(rule)};
+  made.access = access_to<BoardConfig>(field, made.rule.words);
+  made.write = [get = made.access.get](const BoardConfig& board) { return value_node(get(board)); };
+  made.read = [set = made.access.set](ValueReader& values, const Key& key, const Entry& entry,
+                                      BoardConfig& board) {
+    if (const auto value = values.read(key.path, entry.value, key.rule)) set(board, *value);
   };
   return made;
 }
 
 // A value with code of its own.
 template <typename Read, typename Write>
-Key coded(const char* path, Read read, Write write, std::string meaning, std::string rule) {
-  return {path, std::move(meaning), "", {}, std::move(rule), std::nullopt, false, write, read};
+Key coded(const char* path, Read read, Write write, std::string meaning, ValueRule rule) {
+  return {path, std::move(meaning), "", std::move(rule), {}, write, read};
 }
 
 // A part of the value of another key, whose code reads and writes it; or a key of a bank, or a section.
-Key part(const char* path, std::string meaning, const char* unit, std::string rule,
-         const std::optional<IntegerRule>& numbers = std::nullopt) {
-  return {path, std::move(meaning), unit, {}, std::move(rule), numbers};
+Key part(const std::string& path, std::string meaning, const std::string& unit, ValueRule rule) {
+  return {path, std::move(meaning), unit, std::move(rule)};
 }
 
 Key optional(Key key) {
@@ -131,14 +134,14 @@ Key optional(Key key) {
 constexpr double microseconds(std::int64_t ps) { return static_cast<double>(ps) / 1e6; }
 
 template <typename Table>
-std::vector<std::string> names_in(const Table& table) {
-  std::vector<std::string> names;
+Words names_in(const Table& table) {
+  Words names;
   for (const auto& row : table) names.emplace_back(row.name);
   return names;
 }
 
-const std::vector<std::string>& port_names() {
-  static const std::vector<std::string> kNames = names_in(fpga::kPortGroups);
+const Words& port_names() {
+  static const Words kNames = names_in(fpga::kPortGroups);
   return kNames;
 }
 
@@ -162,15 +165,20 @@ std::vector<std::string> census_size_texts() {
   return texts;
 }
 
-constexpr std::array kPlainCosts = {kernels::CostKind::kSad, kernels::CostKind::kSsd,
-                                    kernels::CostKind::kZncc};
+// The costs without a parameter, in the order of CostKind.
+std::vector<std::string> plain_costs() {
+  using kernels::CostKind;
+  std::vector<std::string> names;
+  for (const CostKind kind : {CostKind::kSad, CostKind::kSsd, CostKind::kZncc})
+    names.emplace_back(kernels::name_of(kind));
+  return names;
+}
 
-std::vector<std::string> cost_texts() {
-  std::vector<std::string> texts;
-  for (const kernels::CostKind kind : kPlainCosts) texts.push_back(cost_text({kind, 0}));
+ValueRule cost_rule() {
+  std::vector<std::string> texts = plain_costs();
   for (const std::string& size : census_size_texts())
     texts.push_back(fmt::format("{{{}: {}}}", kernels::name_of(kernels::CostKind::kCensus), size));
-  return texts;
+  return {listed(texts), {}, {}, plain_costs()};
 }
 
 void read_name(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
@@ -178,25 +186,24 @@ void read_name(ValueReader& values, const Key& key, const Entry& entry, BoardCon
   const bool is_printable = std::none_of(
       name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
   if (!is_text(entry.value) || name.empty() || !is_printable)
-    return values.report(key.path, entry.value, key.rule_text);
+    return values.report(key.path, entry.value, key.rule.text);
   board.name = name;
 }
 
 void read_priority(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-  if (!entry.value.is_list()) return values.report(key.path, entry.value, key.rule_text);
+  if (!entry.value.is_list()) return values.report(key.path, entry.value, key.rule.text);
   const std::size_t before = values.finding_count();
   std::vector<std::string> missing = port_names();
   memory::PriorityList ports;
   for (const YamlNode& item : entry.value.items) {
-    const auto port = values.read_word(key.path, item, port_names());
-    if (!port) continue;
+    if (!values.read(key.path, item, rule_of(port_names()))) continue;
     const auto name = std::find(missing.begin(), missing.end(), item.text);
     if (name == missing.end()) {
       values.report(key.path, item, "repeated; each port once");
     } else {
       missing.erase(name);
     }
-    ports.push_back(static_cast<memory::Port>(*port));
+    ports.push_back(static_cast<memory::Port>(index_in(port_names(), item.text)));
   }
   if (values.finding_count() > before) return;
   if (!missing.empty())
@@ -225,7 +232,7 @@ std::optional<BufferBanks> read_buffer(ValueReader& values, const Key& key, cons
   const std::string rule =
       fmt::format("a stripe {{rows: [..]}} has {} different banks", fpga::kStripeRule.text());
   if (entry == nullptr) {
-    values.report(key.path, node, key.rule_text);
+    values.report(key.path, node, key.rule.text);
     return std::nullopt;
   }
   const YamlNode* const rows = &entry->value;
@@ -253,7 +260,7 @@ std::optional<BufferBanks> read_buffer(ValueReader& values, const Key& key, cons
 void read_banks(ValueReader& values, const Key& key, const YamlNode& node, std::vector<BufferBanks>& list) {
   const std::vector<YamlNode> single = {node};
   const std::vector<YamlNode>& items = node.is_list() ? node.items : single;
-  if (items.empty() || items.size() > kMostBuffers) return values.report(key.path, node, key.rule_text);
+  if (items.empty() || items.size() > kMostBuffers) return values.report(key.path, node, key.rule.text);
   const std::size_t before = values.finding_count();
   list.clear();
   for (const YamlNode& item : items) {
@@ -297,16 +304,21 @@ Key banks_key(Buffer buffer, const char* meaning, const std::string& rule) {
   const auto write = [buffer](const BoardConfig& board) {
     return visit_buffer(board.allocation, buffer, [](const auto& banks) { return banks_node(banks); });
   };
-  return coded(key_of(buffer), read, write, meaning, rule);
+  return coded(key_of(buffer), read, write, meaning, {rule});
+}
+
+// 0 if the value could not be read.
+int integer_or_zero(const std::optional<KeyValue>& read) {
+  return read ? static_cast<int>(std::get<std::int64_t>(*read)) : 0;
 }
 
 void read_kernel(ValueReader& values, const Key& key, const YamlNode& node, kernels::FilterKernel& filter) {
   if (!values.check_use(key.path, node)) return;
   const auto size = static_cast<std::int64_t>(node.items.size());
   if (!node.is_list() || !kernels::kKernelSizeRule.allows(size))
-    return values.report(key.path, node, key.rule_text);
+    return values.report(key.path, node, key.rule.text);
   const std::size_t before = values.finding_count();
-  const std::string rule = "entries " + kernels::kKernelEntryRule.text();
+  const ValueRule rule = {"entries " + kernels::kKernelEntryRule.text(), kernels::kKernelEntryRule};
   std::int64_t sum = 0;
   for (const YamlNode& row : node.items) {
     if (!values.check_use(key.path, row)) continue;
@@ -315,8 +327,7 @@ void read_kernel(ValueReader& values, const Key& key, const YamlNode& node, kern
       continue;
     }
     for (const YamlNode& item : row.items) {
-      filter.weights.push_back(
-          values.read_integer(key.path, item, kernels::kKernelEntryRule, rule).value_or(0));
+      filter.weights.push_back(integer_or_zero(values.read(key.path, item, rule)));
       sum += filter.weights.back();
     }
   }
@@ -332,16 +343,17 @@ void read_filter(ValueReader& values, const Key& key, const Entry& entry, BoardC
   } else if (node.is("log7")) {
     board.matcher.filter = kernels::log7();
   } else if (!node.is_map()) {
-    values.report(key.path, node, key.rule_text);
+    values.report(key.path, node, key.rule.text);
   } else {
     const auto entries =
         values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
     kernels::FilterKernel filter;
     for (const Entry* const part : *entries) {
+      const Key& its = board_key(below(key.path, part->key.text));
       if (part->key.is("kernel"))
-        read_kernel(values, board_key("matcher.filter.kernel"), part->value, filter);
+        read_kernel(values, its, part->value, filter);
       else
-        filter.shift = values.read_integer(board_key("matcher.filter.shift"), part->value).value_or(0);
+        filter.shift = integer_or_zero(values.read(its.path, part->value, its.rule));
     }
     board.matcher.filter = std::move(filter);
   }
@@ -364,22 +376,18 @@ YamlNode write_filter(const BoardConfig& board) {
 }
 
 void read_cost(ValueReader& values, const Key& key, const Entry& entry, BoardConfig& board) {
-  const YamlNode& node = entry.value;
-  if (node.is_map()) {
-    const auto entries =
-        values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
-    if (entries->empty()) return;
-    const auto size = values.read_integer(board_key("matcher.cost.census"), entries->front()->value);
-    board.matcher.cost = {kernels::CostKind::kCensus,
-                          size.value_or(static_cast<int>(kernels::kCensusSizeRule.min))};
+  kernels::MatchingCost& cost = board.matcher.cost;
+  if (!entry.value.is_map()) {
+    if (values.read(key.path, entry.value, key.rule))
+      cost = {static_cast<kernels::CostKind>(index_in(key.rule.words, entry.value.text)), 0};
     return;
   }
-  for (const kernels::CostKind kind : kPlainCosts) {
-    if (!node.is(kernels::name_of(kind))) continue;
-    board.matcher.cost = {kind, 0};
-    return;
-  }
-  values.report(key.path, node, kMustBeOneOf + key.rule_text);
+  const auto entries =
+      values.read_entries(key.path, entry.value, entry.key.place, child_keys(key.path), child_keys(key.path));
+  if (entries->empty()) return;
+  const Key& census = board_key("matcher.cost.census");
+  const int size = integer_or_zero(values.read(census.path, entries->front()->value, census.rule));
+  cost = {kernels::CostKind::kCensus, size != 0 ? size : static_cast<int>(kernels::kCensusSizeRule.min)};
 }
 
 YamlNode write_cost(const BoardConfig& board) {
@@ -392,189 +400,171 @@ YamlNode write_cost(const BoardConfig& board) {
   return node;
 }
 
-std::string rule_of(const BankTimingKey& key) {
-  const std::string kind = memory::traits_of(key.kind).name;
+std::string rule_text_of(const BankKey& key) {
+  if (!key.kind) return key.rule.text;
+  const std::string kind = memory::traits_of(*key.kind).name;
   if (key.name == kRefreshCycles)
     return fmt::format("{}; required where the kind is {} and refreshes, refused beside off or another kind",
-                       key.rule_text(), kind);
-  return fmt::format("{}; required where the kind is {}, refused beside another", key.rule_text(), kind);
+                       key.rule.text, kind);
+  return fmt::format("{}; required where the kind is {}, refused beside another", key.rule.text, kind);
 }
 
 // The keys of `ssram`.
-std::vector<Key> bank_keys() {
-  const std::string kinds = listed(bank_kind_names());
-  const std::string words = memory::kBankWordsRule.text();
-  std::vector<Key> keys = {
-      part("ssram.default.words", "depth of a bank that gives none of its own", "words", words,
-           memory::kBankWordsRule),
-      part("ssram.default.kind", "kind of a bank that gives none of its own", "", kinds)};
-  const auto add_timing = [&keys](const std::string& path, const char* of) {
-    for (const BankTimingKey& key : bank_timing_keys())
-      keys.push_back(optional(part((path + key.name).c_str(), fmt::format("{}{}", key.meaning, of), key.unit,
-                                   rule_of(key), key.rule)));
-  };
-  add_timing("ssram.default.", "; of a bank that gives none of its own");
-  keys.push_back(optional(
-      part("ssram.banks.NAME.words", "depth of the bank NAME", "words", words, memory::kBankWordsRule)));
-  keys.push_back(optional(part("ssram.banks.NAME.kind", "kind of the bank NAME", "", kinds)));
-  add_timing("ssram.banks.NAME.", "; of the bank NAME");
+std::vector<Key> ssram_keys() {
+  std::vector<Key> keys;
+  for (const auto& [section, bank] : {std::pair("ssram.default", "a bank that gives none of its own"),
+                                      {"ssram.banks.NAME", "the bank NAME"}}) {
+    for (const BankKey& key : bank_keys()) {
+      ValueRule rule = key.rule;
+      rule.text = rule_text_of(key);
+      const std::string meaning = key.meaning + (key.kind ? "; of " : " of ") + bank;
+      keys.push_back(part(below(section, key.name), meaning, key.unit, std::move(rule)));
+      keys.back().is_optional = key.kind || section != std::string("ssram.default");
+    }
+  }
   return keys;
 }
 
 std::vector<Key> make_keys() {
   using B = BoardConfig;
+  constexpr DecimalRule kClockMhz = {1, 1000};
   const std::string one =
       fmt::format("a bank, a stripe {{rows: [..]}} of {} banks, or ", fpga::kStripeRule.text());
   const std::string list_rule = one + "a list of 1 to 3 of them";
   const std::string image_rule = list_rule + "; left_image and right_image equally long";
   const std::string table_rule = one + "none";
-  const std::string kinds = listed(bank_kind_names());
-  Key trigger_words =
-      integer("capture.fifo_trigger_words", [](B& b) { return &b.capture.fifo_trigger_words; },
-              "words in the FIFO at which it asks for the PCI bus", "words", {1, 4096});
-  trigger_words.rule_text = "1..fifo_words";
   std::vector<Key> all = {
-      coded(
-          "name", read_name, [](const B& b) { return YamlNode::word(b.name); },
-          "the board's name, as results give it",
-          "a text of one or more characters without control characters; quoted if it could be read as "
-          "a number, a truth value or null"),
-      integer(
-          "image.width", [](B& b) { return &b.image.width; },
-          size_meaning("width", fpga::kWidthWithTableRule), "pixels", fpga::kWidthRule),
-      integer(
-          "image.height", [](B& b) { return &b.image.height; },
-          size_meaning("height", fpga::kHeightWithTableRule), "pixels", fpga::kHeightRule),
-      decimal(
-          "cameras.frame_rate_hz", [](B& b) { return &b.cameras.frame_rate_hz; },
-          "frame rate of both cameras; on demand that of their line times", "Hz", 0.1, 1000),
-      word("cameras.trigger", [](B& b) { return &b.cameras.trigger; },
-           "whether frames follow a frame clock, or begin when triggered", {"free_running", "on_demand"}),
-      word("capture.destination", [](B& b) { return &b.capture.destination; },
-           "where capture writes: the FPGA board, or a ring in host memory", {"board", "host_memory"}),
-      integer("capture.host_frames", [](B& b) { return &b.capture.host_frames; },
-              "pairs in the ring in host memory, which takes at most 1 GiB", "pairs", {1, 64}),
-      integer("capture.fifo_words", [](B& b) { return &b.capture.fifo_words; }, "FIFO of a capture board",
-              "words", {1, 4096}),
-      trigger_words,
-      decimal(
-          "pci.clock_mhz", [](B& b) { return &b.pci.clock_mhz; }, "clock of the PCI bus", "MHz", 1, 1000),
-      integer("pci.latency_timer_clocks", [](B& b) { return &b.pci.latency_timer_clocks; },
-              "latency timer of every PCI master", "clocks", {0, 255}),
-      integer("pci.bridge_wait_clocks", [](B& b) { return &b.pci.bridge_wait_clocks; },
-              "wait clocks of the bridge as a PCI target", "clocks", {0, 255}),
-      integer("pci.memory_wait_clocks", [](B& b) { return &b.pci.memory_wait_clocks; },
-              "wait clocks of host memory as a PCI target", "clocks", {0, 255}),
-      optional(integer(
-          "pci.width_bits", [](B& b) { return &b.pci.width_bits; },
-          "width of the PCI bus; optional, without it 32", "bits", pci::kWidthRule)),
+      coded("name", read_name, [](const BoardConfig& b) { return YamlNode::word(b.name); },
+            "the board's name, as results give it",
+            {"a text of one or more characters without control characters; quoted if it could be read as "
+             "a number, a truth value or null"}),
+      simple("image.width", at(&B::image, &ImageConfig::width),
+             size_meaning("width", fpga::kWidthWithTableRule), "pixels", rule_of(fpga::kWidthRule)),
+      simple("image.height", at(&B::image, &ImageConfig::height),
+             size_meaning("height", fpga::kHeightWithTableRule), "pixels", rule_of(fpga::kHeightRule)),
+      simple("cameras.frame_rate_hz", at(&B::cameras, &CamerasConfig::frame_rate_hz),
+             "frame rate of both cameras; on demand that of their line times", "Hz",
+             rule_of(DecimalRule{capture::kMinFrameRateHz, capture::kMaxFrameRateHz})),
+      simple("cameras.trigger", at(&B::cameras, &CamerasConfig::trigger),
+             "whether frames follow a frame clock, or begin when triggered", "",
+             rule_of({"free_running", "on_demand"})),
+      simple("capture.destination", at(&B::capture, &CaptureConfig::destination),
+             "where capture writes: the FPGA board, or a ring in host memory", "",
+             rule_of({"board", "host_memory"})),
+      simple("capture.host_frames", at(&B::capture, &CaptureConfig::host_frames),
+             "pairs in the ring in host memory, which takes at most 1 GiB", "pairs",
+             rule_of(IntegerRule{1, 64})),
+      simple("capture.fifo_words", at(&B::capture, &CaptureConfig::fifo_words), "FIFO of a capture board",
+             "words", rule_of(capture::kFifoWordsRule)),
+      simple("capture.fifo_trigger_words", at(&B::capture, &CaptureConfig::fifo_trigger_words),
+             "words in the FIFO at which it asks for the PCI bus", "words",
+             {"1..fifo_words", capture::kFifoWordsRule}),
+      simple("pci.clock_mhz", at(&B::pci, &PciConfig::clock_mhz), "clock of the PCI bus", "MHz",
+             rule_of(kClockMhz)),
+      simple("pci.latency_timer_clocks", at(&B::pci, &PciConfig::latency_timer_clocks),
+             "latency timer of every PCI master", "clocks", rule_of(pci::kLatencyTimerRule)),
+      simple("pci.bridge_wait_clocks", at(&B::pci, &PciConfig::bridge_wait_clocks),
+             "wait clocks of the bridge as a PCI target", "clocks", rule_of(pci::kWaitClocksRule)),
+      simple("pci.memory_wait_clocks", at(&B::pci, &PciConfig::memory_wait_clocks),
+             "wait clocks of host memory as a PCI target", "clocks", rule_of(pci::kWaitClocksRule)),
+      optional(simple("pci.width_bits", at(&B::pci, &PciConfig::width_bits),
+                      "width of the PCI bus; optional, without it 32", "bits", rule_of(pci::kWidthRule))),
       optional(part("pci.load", "a third-party master that loads the PCI bus; optional, without it none", "",
-                    "none or a map of burst_words, interval_us, first_us, access_us")),
-      integer(
-          "pci.load.burst_words", [](B& b) { return &b.pci.load.value().burst_words; },
-          "words that each transfer of the load reads", "words", pci::kLoadBurstRule),
-      decimal(
-          "pci.load.interval_us", [](B& b) { return &b.pci.load.value().interval_us; },
+                    {"none or a map of burst_words, interval_us, first_us, access_us", {}, {}, {"none"}})),
+      simple("pci.load.burst_words", of_load(&PciLoadConfig::burst_words),
+             "words that each transfer of the load reads", "words", rule_of(pci::kLoadBurstRule)),
+      simple(
+          "pci.load.interval_us", of_load(&PciLoadConfig::interval_us),
           "from one transfer's request to the next, to the nearest picosecond; 0: asks again at once, a hog",
-          "us", 0, microseconds(pci::kLoadTimeRule.max)),
-      optional(decimal(
-          "pci.load.first_us", [](B& b) { return &b.pci.load.value().first_us; },
-          "time of the first request, to the nearest picosecond; optional, without it 0", "us", 0,
-          microseconds(pci::kLoadTimeRule.max))),
-      optional(decimal(
-          "pci.load.access_us", [](B& b) { return &b.pci.load.value().access_us; },
-          "time that the load's own device makes the bus wait before the first word, to the "
-          "nearest picosecond; optional, without it 0",
-          "us", 0, microseconds(pci::kLoadAccessRule.max))),
-      decimal(
-          "bridge.local_clock_mhz", [](B& b) { return &b.bridge.local_clock_mhz; },
-          "clock of the bridge's local bus", "MHz", 1, 1000),
-      integer("bridge.dma_burst_words", [](B& b) { return &b.bridge.dma_burst_words; },
-              "longest burst of a DMA channel", "words", {1, 1024}),
-      integer("bridge.posted_words", [](B& b) { return &b.bridge.posted_words; },
-              "posted writes that the bridge can hold", "words", {1, 4096}),
-      word(
-          "fpga.device", [](B& b) { return &b.fpga.device; }, "the FPGA, for its resources",
-          names_in(area::kDevices)),
-      optional(word(
-          "fpga.package", [](B& b) { return &b.fpga.package; },
+          "us", rule_of(DecimalRule{0, microseconds(pci::kLoadTimeRule.max)})),
+      optional(simple("pci.load.first_us", of_load(&PciLoadConfig::first_us),
+                      "time of the first request, to the nearest picosecond; optional, without it 0", "us",
+                      rule_of(DecimalRule{0, microseconds(pci::kLoadTimeRule.max)}))),
+      optional(simple("pci.load.access_us", of_load(&PciLoadConfig::access_us),
+                      "time that the load's own device makes the bus wait before the first word, to the "
+                      "nearest picosecond; optional, without it 0",
+                      "us", rule_of(DecimalRule{0, microseconds(pci::kLoadAccessRule.max)}))),
+      simple("bridge.local_clock_mhz", at(&B::bridge, &BridgeConfig::local_clock_mhz),
+             "clock of the bridge's local bus", "MHz", rule_of(kClockMhz)),
+      simple("bridge.dma_burst_words", at(&B::bridge, &BridgeConfig::dma_burst_words),
+             "longest burst of a DMA channel", "words", rule_of(pci::kDmaBurstRule)),
+      simple("bridge.posted_words", at(&B::bridge, &BridgeConfig::posted_words),
+             "posted writes that the bridge can hold", "words", rule_of(pci::kPostedWordsRule)),
+      simple("fpga.device", at(&B::fpga, &FpgaConfig::device), "the FPGA, for its resources", "",
+             rule_of(names_in(area::kDevices))),
+      optional(simple(
+          "fpga.package", at(&B::fpga, &FpgaConfig::package),
           "the package of an xc2v6000, whose user pins the board must not exceed; optional, without it any",
-          names_in(area::kPackages))),
-      decimal(
-          "fpga.clock_mhz", [](B& b) { return &b.fpga.clock_mhz; },
-          "clock of the FPGA core and of the SSRAM banks", "MHz", 1, 1000),
-      word(
-          "fpga.arbitration", [](B& b) { return &b.fpga.arbiter.policy; },
-          "how a bank picks one of the ports that request it", names_in(memory::arbitration_policies())),
+          "", rule_of(names_in(area::kPackages)))),
+      simple("fpga.clock_mhz", at(&B::fpga, &FpgaConfig::clock_mhz),
+             "clock of the FPGA core and of the SSRAM banks", "MHz", rule_of(kClockMhz)),
+      simple(
+          "fpga.arbitration", [](auto& b) { return &b.fpga.arbiter.policy; },
+          "how a bank picks one of the ports that request it", "",
+          rule_of(names_in(memory::arbitration_policies()))),
       coded("fpga.priority", read_priority, write_priority, priority_meaning(),
-            fmt::format("a list that names each port once: {}", fmt::join(port_names(), ", "))),
-      integer(
-          "fpga.lane_fifo_slots", [](B& b) { return &b.fpga.lane_fifo_slots; },
-          "slots that may be in a lane, taken and not yet consumed", "slots", fpga::kLaneFifoRule),
-      integer(
-          "fpga.result_fifo_words", [](B& b) { return &b.fpga.result_fifo_words; },
-          "queue of result words before the result port; with fewer than 2 for each of matcher.rows "
-          "the matcher waits for it",
-          "words", fpga::kResultFifoRule),
-      integer(
-          "fpga.pipeline_latency_cycles", [](B& b) { return &b.fpga.pipeline_latency_cycles; },
-          "cycles of registers that the model does not spell out", "cycles", fpga::kPipelineLatencyRule),
-      optional(word("fpga.tables", [](B& b) { return &b.fpga.joint_tables; },
-                    "whether each side has a look-up table of its own, "
-                    "or both share one; optional, without it separate",
-                    {"separate", "joint"})),
-      optional(word(
-          "fpga.pixel_cache", [](B& b) { return &b.fpga.pixel_cache; },
-          "whether a lane keeps the last word that it read, for each slot of a column; optional, without it "
-          "none",
-          {"none", "word"})),
-      optional(integer(
-          "fpga.lanes", [](B& b) { return &b.fpga.lanes; },
+            {fmt::format("a list that names each port once: {}", fmt::join(port_names(), ", "))}),
+      simple("fpga.lane_fifo_slots", at(&B::fpga, &FpgaConfig::lane_fifo_slots),
+             "slots that may be in a lane, taken and not yet consumed", "slots",
+             rule_of(fpga::kLaneFifoRule)),
+      simple("fpga.result_fifo_words", at(&B::fpga, &FpgaConfig::result_fifo_words),
+             "queue of result words before the result port; with fewer than 2 for each of matcher.rows "
+             "the matcher waits for it",
+             "words", rule_of(fpga::kResultFifoRule)),
+      simple("fpga.pipeline_latency_cycles", at(&B::fpga, &FpgaConfig::pipeline_latency_cycles),
+             "cycles of registers that the model does not spell out", "cycles",
+             rule_of(fpga::kPipelineLatencyRule)),
+      optional(simple("fpga.tables", at(&B::fpga, &FpgaConfig::joint_tables),
+                      "whether each side has a look-up table of its own, or both share one; optional, "
+                      "without it separate",
+                      "", rule_of({"separate", "joint"}))),
+      optional(simple("fpga.pixel_cache", at(&B::fpga, &FpgaConfig::pixel_cache),
+                      "whether a lane keeps the last word that it read, for each slot of a column; optional, "
+                      "without it none",
+                      "", rule_of({"none", "word"}))),
+      optional(simple(
+          "fpga.lanes", at(&B::fpga, &FpgaConfig::lanes),
           "lanes of each side, each fetches a pixel in a cycle; at most matcher.window + matcher.rows - 1, "
-          "and 1 "
-          "unless matcher.fetch is column; optional, without it 1",
-          "lanes", fpga::kLanesRule)),
+          "and 1 unless matcher.fetch is column; optional, without it 1",
+          "lanes", rule_of(fpga::kLanesRule))),
       banks_key(Buffer::kLeftImage, "banks of the left input buffers, used in turn", image_rule),
       banks_key(Buffer::kRightImage, "banks of the right input buffers, used in turn", image_rule),
       banks_key(Buffer::kDisparity, "banks of the result buffers, used in turn", list_rule),
       banks_key(Buffer::kLeftLut, "bank of the left rectification table", table_rule),
       banks_key(Buffer::kRightLut, "bank of the right rectification table", table_rule),
-      integer(
-          "matcher.window", [](B& b) { return &b.matcher.window; }, "rows and columns of the matching window",
-          "pixels", kernels::kWindowRule),
-      integer(
-          "matcher.disparities", [](B& b) { return &b.matcher.disparities; },
-          "number of candidate disparities", "pixels", kernels::kDisparitiesRule),
+      simple("matcher.window", at(&B::matcher, &MatcherConfig::window),
+             "rows and columns of the matching window", "pixels", rule_of(kernels::kWindowRule)),
+      simple("matcher.disparities", at(&B::matcher, &MatcherConfig::disparities),
+             "number of candidate disparities", "pixels", rule_of(kernels::kDisparitiesRule)),
       coded("matcher.filter", read_filter, write_filter, "filter before matching",
-            "none, log7 or a map of kernel, shift"),
+            {"none, log7 or a map of kernel, shift", {}, {}, {"none", "log7"}}),
       part("matcher.filter.kernel", "weights of a filter of one's own, rows from the top", "",
-           "a square list of lists, " + kernels::kKernelSizeRule.text() + " rows, entries " +
-               kernels::kKernelEntryRule.text() + ", sum 0"),
+           {"a square list of lists, " + kernels::kKernelSizeRule.text() + " rows, entries " +
+            kernels::kKernelEntryRule.text() + ", sum 0"}),
       part("matcher.filter.shift", "right shift of the sum of a filter of one's own", "bits",
-           kernels::kShiftRule.text(), kernels::kShiftRule),
-      word("matcher.fetch", [](B& b) { return &b.matcher.fetch; },
-           "how often a pixel is read: in every column of its window, or once", {"column", "line_buffer"}),
-      integer_or(
-          "off", "matcher.lr_tolerance", [](B& b) { return &b.matcher.lr_tolerance; },
-          "difference that the left-right check tolerates", "pixels", kernels::kLrToleranceRule),
-      optional(integer_or(
-          "all", "matcher.units", [](B& b) { return &b.matcher.units; },
-          "column and window modules, at most matcher.disparities; optional, without it all, "
-          "one for each disparity",
-          "modules", fpga::kUnitsRule)),
-      optional(integer(
-          "matcher.rows", [](B& b) { return &b.matcher.rows; },
-          "rows of results computed at once, 1 unless matcher.fetch is column; optional, without "
-          "it 1",
-          "rows", fpga::kRowsRule)),
+           rule_of(kernels::kShiftRule)),
+      simple("matcher.fetch", at(&B::matcher, &MatcherConfig::fetch),
+             "how often a pixel is read: in every column of its window, or once", "",
+             rule_of({"column", "line_buffer"})),
+      simple("matcher.lr_tolerance", at(&B::matcher, &MatcherConfig::lr_tolerance),
+             "difference that the left-right check tolerates", "pixels",
+             rule_of(kernels::kLrToleranceRule, "off")),
+      optional(simple("matcher.units", at(&B::matcher, &MatcherConfig::units),
+                      "column and window modules, at most matcher.disparities; optional, without it all, one "
+                      "for each disparity",
+                      "modules", rule_of(fpga::kUnitsRule, "all"))),
+      optional(simple("matcher.rows", at(&B::matcher, &MatcherConfig::rows),
+                      "rows of results computed at once, 1 unless matcher.fetch is column; optional, "
+                      "without it 1",
+                      "rows", rule_of(fpga::kRowsRule))),
       optional(coded("matcher.cost", read_cost, write_cost,
-                     "how two windows are compared; optional, without it sad", listed(cost_texts()))),
+                     "how two windows are compared; optional, without it sad", cost_rule())),
       part("matcher.cost.census", "rows and columns of the neighbourhood of the census bits", "pixels",
-           listed(census_size_texts()), kernels::kCensusSizeRule),
+           {listed(census_size_texts()), kernels::kCensusSizeRule}),
   };
   const auto allocation = std::find_if(all.begin(), all.end(),
                                        [](const Key& key) { return key.path == key_of(Buffer::kLeftImage); });
-  const std::vector<Key> banks = bank_keys();
+  const std::vector<Key> banks = ssram_keys();
   all.insert(allocation, banks.begin(), banks.end());
   return all;
 }
@@ -589,7 +579,7 @@ const std::vector<Key>& board_keys() {
 std::vector<Key> keys() {
   std::vector<Key> all = {
       part("extends", "the preset that supplies the keys that the file leaves out; optional, the first key",
-           "", listed(preset_names()))};
+           "", rule_of(preset_names()))};
   all.insert(all.end(), board_keys().begin(), board_keys().end());
   return all;
 }
@@ -613,13 +603,26 @@ bool has_key(const BoardConfig& board, const Key& key) {
   return board.pci.load.has_value() || !is_below(key.path, "pci.load");
 }
 
-bool allows_number(const Key& key, const YamlNode& number) {
-  if (key.numbers) {
-    const auto value = integer_of(number);
-    return value && key.numbers->allows(*value);
-  }
-  const auto* const decimal = std::get_if<DecimalKey>(&key.kind);
-  return decimal == nullptr || decimal->allows(decimal_of(number).value_or(decimal->min - 1));
+bool ValueRule::allows_number(const YamlNode& number) const {
+  if (integers) return integers->allows(integer_of(number).value_or(integers->min - 1));
+  return !decimals || decimals->allows(decimal_of(number).value_or(decimals->min - 1));
+}
+
+KeyValue value_of(const Key& key, const BoardConfig& board) {
+  if (key.access.get) return key.access.get(board);
+  const YamlNode node = key.write(board);
+  return node.is_scalar() ? node.text : flow_text(node);
+}
+
+std::string value_text(const KeyValue& value) {
+  if (const auto* const integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  const auto* const decimal = std::get_if<double>(&value);
+  return decimal != nullptr ? decimal_text(*decimal) : std::get<std::string>(value);
+}
+
+YamlNode value_node(const KeyValue& value) {
+  const bool is_word = std::holds_alternative<std::string>(value);
+  return is_word ? YamlNode::word(std::get<std::string>(value)) : YamlNode::plain(value_text(value));
 }
 
 std::string cost_text(const kernels::MatchingCost& cost) {
@@ -628,59 +631,39 @@ std::string cost_text(const kernels::MatchingCost& cost) {
   return flow_text(write_cost(board));
 }
 
-const std::vector<std::string>& bank_kind_names() {
-  static const std::vector<std::string> kNames = names_in(memory::kBankTraits);
-  return kNames;
-}
-
-std::string BankTimingKey::rule_text() const {
-  return rule.text() + (is_power_of_two ? ", a power of two" : "") + (may_be_off ? " or off" : "");
-}
-
-const std::vector<BankTimingKey>& bank_timing_keys() {
+const std::vector<BankKey>& bank_keys() {
   using memory::BankKind;
   using memory::SdramTiming;
-  using B = BankConfig;
-  // With a value that is read, the timing of the other keys follows.
-  static const auto sdram = [](B& bank) -> SdramTiming& {
-    if (!bank.sdram) bank.sdram.emplace();
-    return *bank.sdram;
+  const auto key = [](const char* name, auto field, const char* meaning, const char* unit, ValueRule rule,
+                      std::optional<BankKind> kind = BankKind::kSdram) {
+    return BankKey{name, meaning, unit, rule, access_to<BankConfig>(field, rule.words), kind};
   };
-  constexpr BankKind kSdram = BankKind::kSdram;
-  static const std::vector<BankTimingKey> kKeys = {
-      {"turnaround_cycles", BankKind::kSyncBurst, "cycles lost between a read and a write", "cycles",
-       memory::kTurnaroundRule, false, false, [](const B& bank) { return bank.turnaround_cycles; },
-       [](B& bank, int value) { bank.turnaround_cycles = value; }},
-      {"cas_latency", kSdram, "read latency", "cycles", memory::kCasLatencyRule, false, false,
-       [](const B& bank) { return bank.sdram->cas_latency; },
-       [](B& bank, int value) { sdram(bank).cas_latency = value; }},
-      {"row_words", kSdram, "32-bit words of a row", "words", memory::kRowWordsRule, true, false,
-       [](const B& bank) { return bank.sdram->row_words; },
-       [](B& bank, int value) { sdram(bank).row_words = value; }},
-      {"internal_banks", kSdram, "banks inside the memory, each with an open row", "banks",
-       memory::kInternalBanksRule, true, false, [](const B& bank) { return bank.sdram->internal_banks; },
-       [](B& bank, int value) { sdram(bank).internal_banks = value; }},
-      {"activate_cycles", kSdram, "cycles to open a row", "cycles", memory::kRowCyclesRule, false, false,
-       [](const B& bank) { return bank.sdram->activate_cycles; },
-       [](B& bank, int value) { sdram(bank).activate_cycles = value; }},
-      {"precharge_cycles", kSdram, "cycles to close a row", "cycles", memory::kRowCyclesRule, false, false,
-       [](const B& bank) { return bank.sdram->precharge_cycles; },
-       [](B& bank, int value) { sdram(bank).precharge_cycles = value; }},
-      {"refresh_interval_cycles", kSdram, "cycles from one refresh to the next", "cycles",
-       memory::kRefreshIntervalRule, false, true,
-       [](const B& bank) { return bank.sdram->refresh_interval_cycles.value_or(0); },
-       [](B& bank, int value) {
-         sdram(bank).refresh_interval_cycles = value == 0 ? std::nullopt : std::optional(value);
-       }},
-      {kRefreshCycles.c_str(), kSdram, "cycles of a refresh", "cycles", memory::kRefreshCyclesRule, false,
-       false, [](const B& bank) { return bank.sdram->refresh_cycles; },
-       [](B& bank, int value) { sdram(bank).refresh_cycles = value; }},
+  static const std::vector<BankKey> kKeys = {
+      key("words", at(&BankConfig::words), "depth", "words", rule_of(memory::kBankWordsRule), {}),
+      key("kind", at(&BankConfig::kind), "kind", "", rule_of(names_in(memory::kBankTraits)), {}),
+      key("turnaround_cycles", at(&BankConfig::turnaround_cycles), "cycles lost between a read and a write",
+          "cycles", rule_of(memory::kTurnaroundRule), BankKind::kSyncBurst),
+      key("cas_latency", of_timing(&SdramTiming::cas_latency), "read latency", "cycles",
+          rule_of(memory::kCasLatencyRule)),
+      key("row_words", of_timing(&SdramTiming::row_words), "32-bit words of a row", "words",
+          rule_of(memory::kRowWordsRule)),
+      key("internal_banks", of_timing(&SdramTiming::internal_banks),
+          "banks inside the memory, each with an open row", "banks", rule_of(memory::kInternalBanksRule)),
+      key("activate_cycles", of_timing(&SdramTiming::activate_cycles), "cycles to open a row", "cycles",
+          rule_of(memory::kRowCyclesRule)),
+      key("precharge_cycles", of_timing(&SdramTiming::precharge_cycles), "cycles to close a row", "cycles",
+          rule_of(memory::kRowCyclesRule)),
+      key("refresh_interval_cycles", of_timing(&SdramTiming::refresh_interval_cycles),
+          "cycles from one refresh to the next", "cycles", rule_of(memory::kRefreshIntervalRule, "off")),
+      key(kRefreshCycles, of_timing(&SdramTiming::refresh_cycles), "cycles of a refresh", "cycles",
+          rule_of(memory::kRefreshCyclesRule)),
   };
   return kKeys;
 }
 
-bool needs_key(const BankConfig& bank, const BankTimingKey& key) {
-  if (bank.kind != key.kind) return false;
+bool needs_key(const BankConfig& bank, const BankKey& key) {
+  if (!key.kind) return true;
+  if (bank.kind != *key.kind) return false;
   const bool refreshes = bank.sdram && bank.sdram->refresh_interval_cycles.has_value();
   return key.name != kRefreshCycles || refreshes;
 }

@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "models/kernels/integer_rule.h"
 #include "platform/config/board_config.h"
+#include "platform/config/board_yaml.h"
 #include "platform/yaml/words.h"
 #include "platform/yaml/yaml_tree.h"
 
@@ -17,47 +17,46 @@ namespace stereotlm::platform {
 
 using kernels::IntegerRule;
 
-class ValueReader;
-struct Key;
-
-// board_keys() has each key of board files once, with its rule. Reader, writer, problems(), `keys`, `--set`,
-// sweeps and knobs follow from it. If a board has no `pci.load`, `field` of a key below `pci.load` throws
-// std::bad_optional_access.
-struct IntegerKey {
-  int* (*field)(BoardConfig&);  // the value in a board
-};
-
-// A key whose value is a decimal number.
-struct DecimalKey {
-  double min;                      // least value
-  double max;                      // greatest value
-  double* (*field)(BoardConfig&);  // the value in a board
+// The allowed values of a decimal number.
+struct DecimalRule {
+  double min;  // the least value
+  double max;  // the greatest value
 
   bool allows(double value) const { return value >= min && value <= max; }  // false for NaN
 };
 
-// A key whose value is one of a few words. If the board's value is none of them, `get` returns the value as a
-// text for messages. `set` uses the index of the word in `words`.
-struct WordKey {
-  std::vector<std::string> words;                      // the allowed words
-  std::function<std::string(const BoardConfig&)> get;  // the word of the board
-  std::function<void(BoardConfig&, int)> set;          // index in `words`
+class ValueReader;
+
+// The values that a key allows: integers, decimal numbers and words. A list or a map has code of its own.
+struct ValueRule {
+  std::string text;                          // such as "0..253 or off"
+  std::optional<IntegerRule> integers = {};  // nullopt: none
+  std::optional<DecimalRule> decimals = {};  // nullopt: none
+  std::vector<std::string> words = {};       // in the order of their enumeration
+
+  bool allows_number(const YamlNode& number) const;  // true without a rule for numbers
 };
 
-// A key of board files.
+// How to get a value of a board or of a bank, and how to set it to a value that its rule allows.
+template <typename Owner>
+struct Access {
+  std::function<KeyValue(const Owner&)> get;
+  std::function<void(Owner&, const KeyValue&)> set;
+};
+
+// A key of board files. board_keys() has each key once, with its rule. Reader, writer, problems(), `keys`,
+// the JSON Schema, `--set`, sweeps and knobs follow from it.
 struct Key {
   std::string path;     // dotted; NAME stands for a bank's name
   std::string meaning;  // one line
   std::string unit;     // empty: none
-  std::variant<std::monostate, IntegerKey, DecimalKey, WordKey> kind;  // monostate: any other
-  std::string rule_text;                                               // the range or the allowed values
-  std::optional<IntegerRule> numbers;  // the rule for integers; nullopt: takes none
-  bool is_optional = false;            // may be missing from its map
+  ValueRule rule;
+  Access<BoardConfig> access = {};  // of a value that is a number or a word; null for any other
   // `write`: the value as YAML. `read`: sets the board to the value of `entry`, or reports what is wrong with
   // it. Null for `pci.load`, for a part of the value of another key, and for a key of a bank.
   std::function<YamlNode(const BoardConfig&)> write = nullptr;
   std::function<void(ValueReader&, const Key&, const YamlNode::Entry& entry, BoardConfig&)> read = nullptr;
-  std::string no_number = "";  // the word that an integer may be instead, such as "off"; empty: none
+  bool is_optional = false;  // may be missing from its map
 };
 
 inline constexpr std::size_t kMostBuffers = 3;  // entries of an image or disparity list
@@ -73,8 +72,11 @@ bool has_key(const BoardConfig&, const Key&);  // false for a key below a `pci.l
 inline bool has_value(const Key& key) { return key.write != nullptr; }
 // `pci.load`: `none`, or a map of the keys below it.
 inline bool is_section(const Key& key) { return key.path == "pci.load"; }
-// Whether the key allows a number. True for a key without a rule for numbers.
-bool allows_number(const Key& key, const YamlNode& number);
+// The value in a board that has it.
+KeyValue value_of(const Key& key, const BoardConfig& board);
+// The value as a text, such as "7", "29.97" and "off".
+std::string value_text(const KeyValue& value);
+YamlNode value_node(const KeyValue& value);  // the value as YAML
 
 // The path of `name` below `path`: "image.width" for "image" and "width". The top is "".
 std::string below(const std::string& path, const std::string& name);
@@ -101,32 +103,23 @@ std::string schema_path(const std::string& path);
 // key is near.
 std::string unknown_key_text(const std::string& path);
 
-// The beginning of a message. The allowed words follow, as listed().
-inline constexpr const char* kMustBeOneOf = "must be one of ";
-
 // A cost as a board file has it: "sad", "{census: 5}".
 std::string cost_text(const kernels::MatchingCost& cost);
 
-// The names that board files use for the kinds of banks, in the order of memory::BankKind.
-const std::vector<std::string>& bank_kind_names();
-// A key of `ssram.default` and of a bank that is required for banks of one kind, and without effect for all
-// others. In one entry with another kind it is an error.
-struct BankTimingKey {
-  const char* name;               // last part of the path
-  memory::BankKind kind;          // which banks need it
-  const char* meaning;            // one line
-  const char* unit;               // empty: none
-  IntegerRule rule;               // allowed values
-  bool is_power_of_two;           // whether only 1, 2, 4, .. are allowed
-  bool may_be_off;                // 0 stands for off
-  int (*get)(const BankConfig&);  // the value in a bank
-  void (*set)(BankConfig&, int);  // sets the value in a bank
-
-  std::string rule_text() const;  // of the value
+// A key of `ssram.default` and of a bank.
+struct BankKey {
+  std::string name;     // last part of the path
+  std::string meaning;  // one line
+  std::string unit;     // empty: none
+  ValueRule rule;
+  Access<BankConfig> access;
+  // Banks of this kind need the key. For banks of all other kinds it has no effect. In one entry with another
+  // kind it is an error. nullopt: every bank has a value.
+  std::optional<memory::BankKind> kind = {};
 };
-const std::vector<BankTimingKey>& bank_timing_keys();  // in the order of board files
+const std::vector<BankKey>& bank_keys();  // in the order of board files
 // Whether the bank needs the key: refresh_cycles only with a refresh.
-bool needs_key(const BankConfig& bank, const BankTimingKey& key);
+bool needs_key(const BankConfig& bank, const BankKey& key);
 
 // For messages about is_bank_name().
 inline constexpr const char* kBankNameRule = "a bank's name is [A-Za-z][A-Za-z0-9_-]*, and not none";

@@ -21,26 +21,20 @@ std::optional<std::string> name_before_colon(const YamlNode::Entry& entry,
                                                                                  : std::nullopt;
 }
 
-// A value of `ssram.default` or of a bank, if the tree has it, and its place. `value` is empty if it could
-// not be read.
-struct Given {
-  bool present = false;
-  Place place;
-  std::optional<int> value;
-};
-
-// The entry of `ssram.default` or of one bank. `key` is the place of its key.
+// The values in the entry of `ssram.default` or of one bank.
 struct BankEntry {
-  Place key;
-  Given words;
-  Given kind;                           // index of memory::kBankTraits
-  std::map<std::string, Given> timing;  // [name of a BankTimingKey]
-};
+  struct Given {
+    Place place;
+    std::optional<KeyValue> value;  // nullopt: it could not be read
+  };
+  Place key;                           // place of the entry's key
+  std::map<std::string, Given> given;  // [name of a BankKey]
 
-// Null if there is no kind, or it could not be read.
-const memory::BankTraits* traits_of(const Given& kind) {
-  return kind.value ? &memory::kBankTraits[static_cast<std::size_t>(*kind.value)] : nullptr;
-}
+  const Given* find(const std::string& name) const {
+    const auto found = given.find(name);
+    return found == given.end() ? nullptr : &found->second;
+  }
+};
 
 const Place& latest(const Place& first, const Place& second) {
   return second.source > first.source ? second : first;
@@ -77,7 +71,7 @@ class BoardReader {
   void read_load(const Key& key, const YamlNode::Entry& entry) {
     if (!values_.check_use(key.path, entry.value)) return;
     const bool is_none = entry.value.is("none");
-    if (!is_none && !entry.value.is_map()) return values_.report(key.path, entry.value, key.rule_text);
+    if (!is_none && !entry.value.is_map()) return values_.report(key.path, entry.value, key.rule.text);
     if (is_none) return;
     board_.pci.load.emplace();
     read_section(key.path, entry.value, entry.key.place);
@@ -94,67 +88,43 @@ class BoardReader {
   }
 
   BankEntry read_bank_entry(const std::string& path, const YamlNode::Entry& entry) {
-    BankEntry bank;
-    bank.key = entry.key.place;
+    BankEntry bank{entry.key.place, {}};
     const std::string schema = schema_path(path);
     const auto entries =
         values_.read_entries(path, entry.value, entry.key.place, child_keys(schema), required_keys(schema));
     if (!entries) return bank;
     for (const YamlNode::Entry* const given : *entries) {
-      const std::string& name = given->key.text;
-      const std::string full = below(path, name);
-      if (const BankTimingKey* const key = timing_key(name)) {
-        bank.timing[name] = {true, given->value.place, read_timing(full, given->value, *key)};
-      } else if (name == "words") {
-        bank.words = {
-            true, given->value.place,
-            values_.read_integer(full, given->value, memory::kBankWordsRule, memory::kBankWordsRule.text())};
-      } else {
-        bank.kind = {true, given->value.place, values_.read_word(full, given->value, bank_kind_names())};
+      for (const BankKey& key : bank_keys()) {
+        if (!given->key.is(key.name)) continue;
+        bank.given[key.name] = {given->value.place,
+                                values_.read(below(path, key.name), given->value, key.rule)};
       }
     }
     check_timing_use(path, bank);
     return bank;
   }
 
-  static const BankTimingKey* timing_key(const std::string& name) {
-    for (const BankTimingKey& key : bank_timing_keys()) {
-      if (key.name == name) return &key;
-    }
-    return nullptr;
-  }
-
-  std::optional<int> read_timing(const std::string& path, const YamlNode& node, const BankTimingKey& key) {
-    if (key.may_be_off && node.is("off")) return 0;
-    const auto value = values_.read_integer(path, node, key.rule, key.rule_text());
-    if (!value || !key.is_power_of_two || memory::is_power_of_two(*value)) return value;
-    values_.report(path, node, key.rule_text());
-    return std::nullopt;
-  }
-
   // An entry with a timing of another kind than its own is a mistake. If the entry inherits its kind, the
   // timing is allowed, and has an effect only if it is of that kind. So is the time of a refresh beside
   // `off`.
   void check_timing_use(const std::string& path, const BankEntry& entry) {
-    const auto off = entry.timing.find("refresh_interval_cycles");
-    for (const BankTimingKey& key : bank_timing_keys()) {
-      const auto found = entry.timing.find(key.name);
-      if (found == entry.timing.end()) continue;
-      const Given& given = found->second;
+    const BankEntry::Given* const kind = entry.find("kind");
+    const BankEntry::Given* const refresh = entry.find("refresh_interval_cycles");
+    for (const BankKey& key : bank_keys()) {
+      const BankEntry::Given* const given = entry.find(key.name);
       // Those of a preset count as inherited: the file or `--set` has overridden the kind beside them.
-      if (!given.value || given.place.source == Place::kPreset) continue;
+      if (!key.kind || given == nullptr || !given->value || given->place.source == Place::kPreset) continue;
       const auto report = [&](const Place& place, const std::string& rule) {
         values_.report_between_keys(
-            latest(given.place, place),
-            fmt::format("{}.{} = {}: {}", path, key.name,
-                        *given.value == 0 ? "off" : std::to_string(*given.value), rule));
+            latest(given->place, place),
+            fmt::format("{}.{} = {}: {}", path, key.name, value_text(*given->value), rule));
       };
-      if (entry.kind.value && traits_of(entry.kind)->kind != key.kind) {
-        report(entry.kind.place, fmt::format("only where the kind is {}, and it is {}",
-                                             memory::traits_of(key.kind).name, traits_of(entry.kind)->name));
-      } else if (key.name == std::string("refresh_cycles") && off != entry.timing.end() &&
-                 off->second.value == 0) {
-        report(off->second.place, "only with a refresh, and refresh_interval_cycles is off");
+      const std::string needed = memory::traits_of(*key.kind).name;
+      if (kind != nullptr && kind->value && value_text(*kind->value) != needed) {
+        report(kind->place,
+               fmt::format("only where the kind is {}, and it is {}", needed, value_text(*kind->value)));
+      } else if (key.name == "refresh_cycles" && refresh != nullptr && refresh->value == KeyValue("off")) {
+        report(refresh->place, "only with a refresh, and refresh_interval_cycles is off");
       }
     }
   }
@@ -181,40 +151,30 @@ class BoardReader {
     for (const YamlNode::Entry* const entry : *entries)
       read_bank(below(path, entry->key.text), *entry, defaults, default_lacks);
     if (names_valid) values_.accept(path, node.place);
-    for (const BankTimingKey& key : bank_timing_keys()) {
+    const BankEntry::Given* const kind = defaults.find("kind");
+    for (const BankKey& key : bank_keys()) {
       if (default_lacks.count(key.name) == 0) continue;
       const std::string full = below("ssram.default", key.name);
-      values_.report_missing_beside(latest(defaults.key, defaults.kind.place), full, rule_text(full));
+      values_.report_missing_beside(latest(defaults.key, kind->place), full, rule_text(full));
     }
   }
 
   void read_bank(const std::string& path, const YamlNode::Entry& node, const BankEntry& defaults,
                  std::set<std::string>& default_lacks) {
     const BankEntry own = read_bank_entry(path, node);
-    const Given& words = own.words.present ? own.words : defaults.words;
-    const Given& kind = own.kind.present ? own.kind : defaults.kind;
-    const memory::BankTraits* const traits = traits_of(kind);
     BankConfig bank;
     bank.name = node.key.text;
-    if (words.value) {
-      bank.words = *words.value;
-      values_.accept(path + ".words", words.place);
-    }
-    if (traits != nullptr) {
-      bank.kind = traits->kind;
-      values_.accept(path + ".kind", kind.place);
-    }
-    for (const BankTimingKey& key : bank_timing_keys()) {
-      if (traits == nullptr || !needs_key(bank, key)) continue;
-      const auto in_own = own.timing.find(key.name);
-      const auto in_defaults = defaults.timing.find(key.name);
-      if (in_own != own.timing.end() || in_defaults != defaults.timing.end()) {
-        const Given& given = (in_own != own.timing.end() ? in_own : in_defaults)->second;
-        if (!given.value) continue;
-        key.set(bank, *given.value);
-        values_.accept(below(path, key.name), given.place);
-      } else if (own.kind.present) {
-        values_.report_missing_beside(latest(latest(own.key, own.kind.place), defaults.key),
+    for (const BankKey& key : bank_keys()) {
+      if (!needs_key(bank, key)) continue;
+      const BankEntry::Given* const in_own = own.find(key.name);
+      const BankEntry::Given* const given = in_own != nullptr ? in_own : defaults.find(key.name);
+      if (given != nullptr && given->value) {
+        key.access.set(bank, *given->value);
+        values_.accept(below(path, key.name), given->place);
+      } else if (given != nullptr || !key.kind) {
+        continue;  // reported with its entry
+      } else if (const auto* const kind = own.find("kind")) {
+        values_.report_missing_beside(latest(latest(own.key, kind->place), defaults.key),
                                       below(path, key.name), rule_text(below("ssram.banks.NAME", key.name)));
       } else {
         default_lacks.insert(key.name);
@@ -332,31 +292,30 @@ void ValueReader::report_repeated(const YamlNode::Entry& entry, const YamlNode::
          is_beside ? fmt::format("repeated key, first at {}:{}", place.line, place.column) : "repeated key");
 }
 
-std::optional<int> ValueReader::read_integer(const std::string& path, const YamlNode& node,
-                                             const IntegerRule& rule, const std::string& rule_text) {
+std::optional<KeyValue> ValueReader::read(const std::string& path, const YamlNode& node,
+                                          const ValueRule& rule) {
   if (!check_use(path, node)) return std::nullopt;
-  const auto value = integer_of(node);
-  if (!value) {
-    report(path, node, fmt::format("not an integer (decimal digits, not in quotes); {}", rule_text));
-  } else if (!rule.allows(*value)) {
-    report(path, node, rule_text);
+  std::optional<KeyValue> value;
+  const char* problem = "";
+  if (node.is_scalar() && std::find(rule.words.begin(), rule.words.end(), node.text) != rule.words.end()) {
+    value = node.text;
+  } else if (rule.integers) {
+    const auto integer = integer_of(node);
+    if (!integer) problem = "not an integer (decimal digits, not in quotes); ";
+    if (integer && rule.integers->allows(*integer)) value = *integer;
+  } else if (rule.decimals) {
+    const auto decimal = decimal_of(node);
+    if (!decimal) problem = "not a decimal number (such as 29.97, not in quotes); ";
+    if (decimal && rule.decimals->allows(*decimal)) value = *decimal;
   } else {
+    problem = "must be one of ";
+  }
+  if (value) {
     accept(path, node.place);
-    return static_cast<int>(*value);
+  } else {
+    report(path, node, problem + rule.text);
   }
-  return std::nullopt;
-}
-
-std::optional<int> ValueReader::read_word(const std::string& path, const YamlNode& node,
-                                          const std::vector<std::string>& words) {
-  if (!check_use(path, node)) return std::nullopt;
-  const auto found = std::find(words.begin(), words.end(), node.text);
-  if (!node.is_scalar() || found == words.end()) {
-    report(path, node, kMustBeOneOf + listed(words));
-    return std::nullopt;
-  }
-  accept(path, node.place);
-  return static_cast<int>(found - words.begin());
+  return value;
 }
 
 BoardConfig read_board(const YamlNode& tree, std::vector<Finding>& findings) {

@@ -52,16 +52,8 @@ class ValueReader {
                                       const std::vector<std::string>& known,
                                       const std::vector<std::string>& required);
 
-  // With the rule of a key that takes integers.
-  std::optional<int> read_integer(const Key& key, const YamlNode& node) {
-    return read_integer(key.path, node, *key.numbers, key.rule_text);
-  }
-  std::optional<int> read_integer(const std::string& path, const YamlNode& node, const IntegerRule& rule,
-                                  const std::string& rule_text);
-
-  // Returns the index of the word in `words`.
-  std::optional<int> read_word(const std::string& path, const YamlNode& node,
-                               const std::vector<std::string>& words);
+  // A number or a word.
+  std::optional<KeyValue> read(const std::string& path, const YamlNode& node, const ValueRule& rule);
 
  private:
   void report_missing(const Place& place, const std::string& path, const std::string& rule);

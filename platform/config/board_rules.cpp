@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/config/board_area.h"
 #include "platform/config/board_reader.h"
@@ -48,33 +49,31 @@ class RuleChecker {
     return std::all_of(paths.begin(), paths.end(), is_valid_);
   }
 
-  // Adds the broken rule `text()` if it is not kept, and all values that it involves are valid by themselves.
-  // Returns false if it has added the rule.
-  template <typename Text>
-  bool require(bool is_kept, const std::vector<std::string>& involved, const Text& text) {
+  // Adds the broken rule, with this text, if it is not kept, and all values that it involves are valid by
+  // themselves. Returns false if it has added the rule.
+  template <typename... Values>
+  bool require(bool is_kept, const std::vector<std::string>& involved, fmt::format_string<Values...> text,
+               Values&&... values) {
     if (is_kept || !all_valid(involved)) return true;
-    found_.push_back({text(), involved});
+    found_.push_back({fmt::format(text, std::forward<Values>(values)...), involved});
     return false;
   }
 
   void check_capture() {
     const CaptureConfig& capture = board_.capture;
     require(capture.fifo_trigger_words <= capture.fifo_words,
-            {"capture.fifo_trigger_words", "capture.fifo_words"}, [&] {
-              return fmt::format("capture.fifo_trigger_words = {}: 1..fifo_words, which is {}",
-                                 capture.fifo_trigger_words, capture.fifo_words);
-            });
+            {"capture.fifo_trigger_words", "capture.fifo_words"},
+            "capture.fifo_trigger_words = {}: 1..fifo_words, which is {}", capture.fifo_trigger_words,
+            capture.fifo_words);
     if (capture.destination != CaptureDestination::kHostMemory) return;
     constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;  // host memory also holds tables and results
     const ImageConfig& image = board_.image;
     const std::int64_t pair_bytes = std::max(std::int64_t{2} * image.width * image.height, std::int64_t{1});
     require(capture.host_frames <= kMostBytes / pair_bytes,
-            {"capture.host_frames", "capture.destination", "image.width", "image.height"}, [&] {
-              return fmt::format(
-                  "capture.host_frames = {}: at most {} pairs of {}x{} pixels, because the ring in host "
-                  "memory may have {} MiB",
-                  capture.host_frames, kMostBytes / pair_bytes, image.width, image.height, kMostBytes >> 20);
-            });
+            {"capture.host_frames", "capture.destination", "image.width", "image.height"},
+            "capture.host_frames = {}: at most {} pairs of {}x{} pixels, because the ring in host memory may "
+            "have {} MiB",
+            capture.host_frames, kMostBytes / pair_bytes, image.width, image.height, kMostBytes >> 20);
   }
 
   bool check_image_size(const std::string& key, int value, const kernels::IntegerRule& rule) {
@@ -84,66 +83,54 @@ class RuleChecker {
     if (board_.allocation.right_lut) tables.emplace_back(key_of(Buffer::kRightLut));
     std::vector<std::string> involved = {key};
     involved.insert(involved.end(), tables.begin(), tables.end());
-    return require(tables.empty(), involved, [&] {
-      return fmt::format("{} = {}: at most {} with a look-up table; set {} to none, or a smaller image", key,
-                         value, rule.max, fmt::join(tables, " and "));
-    });
+    return require(tables.empty(), involved,
+                   "{} = {}: at most {} with a look-up table; set {} to none, or a smaller image", key, value,
+                   rule.max, fmt::join(tables, " and "));
   }
 
   void check_matcher() {
     const MatcherConfig& matcher = board_.matcher;
     require(fpga::has_units_for(matcher.units, matcher.disparities), {"matcher.units", "matcher.disparities"},
-            [&] {
-              return fmt::format("matcher.units = {}: 1..disparities, which is {}, or all", *matcher.units,
-                                 matcher.disparities);
-            });
-    require(fpga::can_fetch_rows(matcher.fetch, matcher.rows), {"matcher.rows", "matcher.fetch"}, [&] {
-      return fmt::format(
-          "matcher.rows = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}",
-          matcher.rows, fpga::kRowsRule.text());
-    });
+            "matcher.units = {}: 1..disparities, which is {}, or all", matcher.units.value_or(0),
+            matcher.disparities);
+    require(fpga::can_fetch_rows(matcher.fetch, matcher.rows), {"matcher.rows", "matcher.fetch"},
+            "matcher.rows = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}",
+            matcher.rows, fpga::kRowsRule.text());
     const int lanes = board_.fpga.lanes;
-    require(fpga::can_divide_columns(matcher.fetch, lanes), {"fpga.lanes", "matcher.fetch"}, [&] {
-      return fmt::format(
-          "fpga.lanes = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}", lanes,
-          fpga::kLanesRule.text());
-    });
+    require(fpga::can_divide_columns(matcher.fetch, lanes), {"fpga.lanes", "matcher.fetch"},
+            "fpga.lanes = {}: must be 1 where matcher.fetch is line_buffer; with column it may be {}", lanes,
+            fpga::kLanesRule.text());
     const int slots = matcher.window + matcher.rows - 1;
     std::vector<std::string> of_column = {"fpga.lanes", "matcher.window"};
     if (matcher.rows != 1) of_column.emplace_back("matcher.rows");  // it may be left out
-    require(matcher.fetch == fpga::Fetch::kLineBuffer || lanes <= slots, of_column, [&] {
-      return fmt::format(
-          "fpga.lanes = {}: at most {}, the slots of a column (matcher.window + matcher.rows - 1)", lanes,
-          slots);
-    });
+    require(matcher.fetch == fpga::Fetch::kLineBuffer || lanes <= slots, of_column,
+            "fpga.lanes = {}: at most {}, the slots of a column (matcher.window + matcher.rows - 1)", lanes,
+            slots);
   }
 
   void check_result_queue() {
     const int words = board_.fpga.result_fifo_words;
     const int rows = board_.matcher.rows;
-    require(fpga::can_queue_rows(words, rows), {"fpga.result_fifo_words", "matcher.rows"}, [&] {
-      return fmt::format(
-          "fpga.result_fifo_words = {}: at least {}, a word for each of the rows that are computed at once; "
-          "or "
-          "fewer matcher.rows",
-          words, rows);
-    });
+    require(
+        fpga::can_queue_rows(words, rows), {"fpga.result_fifo_words", "matcher.rows"},
+        "fpga.result_fifo_words = {}: at least {}, a word for each of the rows that are computed at once; "
+        "or fewer matcher.rows",
+        words, rows);
   }
 
   void check_joint_tables() {
+    if (!board_.fpga.joint_tables) return;
     const auto& left = board_.allocation.left_lut;
     const auto& right = board_.allocation.right_lut;
     const Buffer wrong = left ? Buffer::kRightLut : Buffer::kLeftLut;
     const Buffer other = left ? Buffer::kLeftLut : Buffer::kRightLut;
-    require(!board_.fpga.joint_tables || (left && left == right),
-            {key_of(wrong), key_of(other), "fpga.tables"}, [&] {
-              const auto& in = left ? left : right;
-              const std::string rule = in ? fmt::format("must be {}, the bank{} of {}", text_of(*in),
-                                                        in->is_striped() ? "s" : "", name_of(other))
-                                          : "must be a bank, and right_lut the same bank";
-              return fmt::format("{} = {}: {}, because fpga.tables is joint; or set fpga.tables to separate",
-                                 key_of(wrong), left && right ? text_of(*right) : "none", rule);
-            });
+    const auto& in = left ? left : right;
+    const std::string rule = in ? fmt::format("must be {}, the bank{} of {}", text_of(*in),
+                                              in->is_striped() ? "s" : "", name_of(other))
+                                : "must be a bank, and right_lut the same bank";
+    require(left && left == right, {key_of(wrong), key_of(other), "fpga.tables"},
+            "{} = {}: {}, because fpga.tables is joint; or set fpga.tables to separate", key_of(wrong),
+            left && right ? text_of(*right) : "none", rule);
   }
 
   void check_bank_depths() {
@@ -177,10 +164,9 @@ class RuleChecker {
   void check_list_lengths() {
     const AllocationConfig& allocation = board_.allocation;
     require(allocation.right_image.size() == allocation.left_image.size(),
-            {key_of(Buffer::kRightImage), key_of(Buffer::kLeftImage)}, [&] {
-              return fmt::format("allocation.right_image = {}: must be as long as left_image, which is {}",
-                                 list_text(allocation.right_image), list_text(allocation.left_image));
-            });
+            {key_of(Buffer::kRightImage), key_of(Buffer::kLeftImage)},
+            "allocation.right_image = {}: must be as long as left_image, which is {}",
+            list_text(allocation.right_image), list_text(allocation.left_image));
   }
 
   void check_bank_names() {
@@ -201,16 +187,14 @@ class RuleChecker {
     const area::Package* const package = area::find_package(board_.fpga.package);
     if (package == nullptr) return;
     const std::string device(area::kDeviceWithPackages);
-    const bool has_package = require(board_.fpga.device == device, {"fpga.package", "fpga.device"}, [&] {
-      return fmt::format("fpga.package = {}: only where fpga.device is {}, and it is {}", package->name,
-                         device, board_.fpga.device);
-    });
+    const bool has_package = require(board_.fpga.device == device, {"fpga.package", "fpga.device"},
+                                     "fpga.package = {}: only where fpga.device is {}, and it is {}",
+                                     package->name, device, board_.fpga.device);
     if (!has_package || !is_valid_("ssram.banks")) return;
     const int pins = pins_of(board_);
-    require(pins <= package->user_pins, {"fpga.package"}, [&] {
-      return fmt::format("fpga.package = {}: {} pins missing: the board needs {}, and it has {}",
-                         package->name, pins - package->user_pins, pins, package->user_pins);
-    });
+    require(pins <= package->user_pins, {"fpga.package"},
+            "fpga.package = {}: {} pins missing: the board needs {}, and it has {}", package->name,
+            pins - package->user_pins, pins, package->user_pins);
   }
 
   // A lane waits as long for each part of a buffer.
@@ -231,11 +215,9 @@ class RuleChecker {
       const int cycles = memory::read_latency_cycles(banks[bank]);
       const int of_first = memory::read_latency_cycles(banks[first]);
       const std::string kind = below(below("ssram.banks", part.bank), "kind");
-      require(part.parts == 1 || cycles == of_first, {part.path(), kind}, [&] {
-        return fmt::format(
-            "{} = {}: its read latency is {}, that of {} is {}; all banks of a stripe need one", part.path(),
-            part.bank, cycles, bank_text(board_.banks[first].name), of_first);
-      });
+      require(part.parts == 1 || cycles == of_first, {part.path(), kind},
+              "{} = {}: its read latency is {}, that of {} is {}; all banks of a stripe need one",
+              part.path(), part.bank, cycles, bank_text(board_.banks[first].name), of_first);
     }
   }
 
@@ -245,12 +227,11 @@ class RuleChecker {
       if (!bank.sdram || !bank.sdram->refresh_interval_cycles) continue;
       const int least = memory::least_refresh_interval(*bank.sdram);
       const std::string path = below(below("ssram.banks", bank.name), "refresh_interval_cycles");
-      require(*bank.sdram->refresh_interval_cycles >= least, {path}, [&] {
-        return fmt::format(
-            "{} = {}: at least {}, or no access might ever be granted: a refresh, and the opening of two "
-            "rows",
-            path, *bank.sdram->refresh_interval_cycles, least);
-      });
+      const int interval = *bank.sdram->refresh_interval_cycles;
+      require(interval >= least, {path},
+              "{} = {}: at least {}, or no access might ever be granted: a refresh, and the opening of two "
+              "rows",
+              path, interval, least);
     }
   }
 

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 
 #include "platform/config/board_keys.h"
@@ -18,35 +15,21 @@ namespace {
 YamlNode bank_node(const BankConfig& bank, const BankConfig* base) {
   YamlNode node = YamlNode::map();
   node.style = YamlNode::Style::kOther;
-  if (base == nullptr || bank.words != base->words)
-    node.add(YamlNode::plain("words"), YamlNode::plain(std::to_string(bank.words)));
-  if (base != nullptr && bank.kind == base->kind && bank.turnaround_cycles == base->turnaround_cycles &&
-      bank.sdram == base->sdram)
-    return node;
-  node.add(YamlNode::plain("kind"), YamlNode::word(memory::traits_of(bank.kind).name));
-  for (const BankTimingKey& key : bank_timing_keys()) {
-    if (!needs_key(bank, key)) continue;
-    const int value = key.get(bank);
-    node.add(YamlNode::plain(key.name),
-             key.may_be_off && value == 0 ? YamlNode::word("off") : YamlNode::plain(std::to_string(value)));
+  const bool has_words = base == nullptr || bank.words != base->words;
+  const bool has_kind = base == nullptr || bank.kind != base->kind ||
+                        bank.turnaround_cycles != base->turnaround_cycles || !(bank.sdram == base->sdram);
+  for (const BankKey& key : bank_keys()) {
+    if (needs_key(bank, key) && (key.name == "words" ? has_words : has_kind))
+      node.add(YamlNode::plain(key.name), value_node(key.access.get(bank)));
   }
   return node;
 }
 
 // An optional key is left out where it has its default, so that the text of such a board stays what it was
 // before there was the key. A section that may be absent is written in full.
-bool is_left_out(const Key& key, const YamlNode& value) {
-  static const auto kDefaults = [] {
-    const BoardConfig defaults;
-    std::unordered_map<std::string_view, std::string> texts;
-    for (const Key& optional : board_keys()) {
-      if (optional.is_optional && optional.write && has_key(defaults, optional))
-        texts[optional.path] = flow_text(optional.write(defaults));
-    }
-    return texts;
-  }();
-  const auto text = kDefaults.find(key.path);
-  return text != kDefaults.end() && flow_text(value) == text->second;
+bool is_left_out(const Key& key, const BoardConfig& board) {
+  static const BoardConfig kDefaults;
+  return key.is_optional && has_key(kDefaults, key) && value_of(key, board) == value_of(key, kDefaults);
 }
 
 // The section of a board file at this path: "" is the whole board.
@@ -66,19 +49,18 @@ YamlNode section_node(const std::string& path, const BoardConfig& board) {
       if (key != nullptr && !board.pci.load) continue;
       value = section_node(full, board);
     } else {
+      if (is_left_out(*key, board)) continue;
       value = key->write(board);
-      if (is_left_out(*key, value)) continue;
     }
     map.add(YamlNode::plain(name), std::move(value));
   }
   return map;
 }
 
-std::variant<std::int64_t, double, std::string> plain_value(const Key& key, const YamlNode& node) {
-  if (std::holds_alternative<DecimalKey>(key.kind))
-    return decimal_of(node).value_or(0);  // not finite: not of a valid board
-  if (const auto integer = integer_of(node)) return *integer;
-  return node.is_scalar() ? node.text : flow_text(node);
+// The value as `--set` takes it.
+std::string set_text(const Key& key, const BoardConfig& board) {
+  const bool is_table = key.path == key_of(Buffer::kLeftLut) || key.path == key_of(Buffer::kRightLut);
+  return is_table ? flow_text(key.write(board)) : value_text(value_of(key, board));
 }
 
 // The values of `--set` that give the banks of `to` to a board with the banks of `from`.
@@ -106,17 +88,15 @@ std::string to_yaml(const BoardConfig& board) { return yaml_text(board_node(boar
 std::vector<BoardValue> values_of(const BoardConfig& board) {
   std::vector<BoardValue> values;
   for (const Key& key : board_keys()) {
-    if (has_value(key) && has_key(board, key))
-      values.push_back({key.path, plain_value(key, key.write(board))});
+    if (has_value(key) && has_key(board, key)) values.push_back({key.path, value_of(key, board)});
   }
   for (const BankConfig& bank : board.banks) {
     const std::string path = below("ssram.banks", bank.name);
-    values.push_back({path + ".words", std::int64_t{bank.words}});
-    values.push_back({path + ".kind", memory::traits_of(bank.kind).name});
-    values.push_back({path + ".turnaround_cycles", std::int64_t{bank.turnaround_cycles}});
-    for (const BankTimingKey& key : bank_timing_keys()) {
-      if (key.kind == memory::BankKind::kSdram && needs_key(bank, key))
-        values.push_back({below(path, key.name), std::int64_t{key.get(bank)}});
+    for (const BankKey& key : bank_keys()) {
+      if (!needs_key(bank, key) && key.name != "turnaround_cycles") continue;
+      const KeyValue value = key.access.get(bank);
+      const bool is_off = key.kind && std::holds_alternative<std::string>(value);
+      values.push_back({below(path, key.name), is_off ? KeyValue(std::int64_t{0}) : value});
     }
   }
   return values;
@@ -132,20 +112,12 @@ bool operator==(const BoardConfig& a, const BoardConfig& b) {
 }
 
 std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig& to) {
-  const auto text_of = [](const BoardValue& value) {
-    if (const auto* const decimal = std::get_if<double>(&value.value)) return decimal_text(*decimal);
-    if (const auto* const integer = std::get_if<std::int64_t>(&value.value)) return std::to_string(*integer);
-    const bool is_bank = value.path == key_of(Buffer::kLeftLut) || value.path == key_of(Buffer::kRightLut);
-    const std::string& text = std::get<std::string>(value.value);
-    return is_bank && text[0] != '{' ? flow_text(YamlNode::word(text)) : text;
-  };
-  std::map<std::string, std::string> before;
-  for (const BoardValue& value : values_of(from)) before[value.path] = text_of(value);
   std::vector<std::string> sets = bank_sets(from, to);
   if (from.pci.load && !to.pci.load) sets.emplace_back("pci.load=none");
-  for (const BoardValue& value : values_of(to)) {
-    if (!is_below(value.path, "ssram") && before[value.path] != text_of(value))
-      sets.push_back(value.path + "=" + text_of(value));
+  for (const Key& key : board_keys()) {
+    if (!has_value(key) || !has_key(to, key)) continue;
+    const std::string text = set_text(key, to);
+    if (!has_key(from, key) || set_text(key, from) != text) sets.push_back(key.path + "=" + text);
   }
   return sets;
 }

@@ -48,10 +48,13 @@ BoardConfig load_board(const std::string& board, const std::vector<std::string>&
 // is no `pci.load` if the board has none.
 std::string to_yaml(const BoardConfig& board);
 
+// The value of a key: a number, or a text. Lists and maps are texts of one line.
+using KeyValue = std::variant<std::int64_t, double, std::string>;
+
 // One value of a board.
 struct BoardValue {
-  std::string path;                                       // "image.width", "ssram.banks.bank0.words"
-  std::variant<std::int64_t, double, std::string> value;  // a number, or text
+  std::string path;  // "image.width", "ssram.banks.bank0.words"
+  KeyValue value;
 };
 
 // Every value of a valid board with its path, in the order of to_yaml(). Lists, words and filters are text as

@@ -106,7 +106,7 @@ std::size_t required_count(std::string_view path) {
 }
 
 std::string rule_text(std::string_view path) {
-  if (const Key* const key = find_key(path)) return key->rule_text;
+  if (const Key* const key = find_key(path)) return key->rule.text;
   if (path == "ssram.banks") return "a map of " + memory::kBankCountRule.text() + " banks";
   return fmt::format("a map of {}", fmt::join(child_keys(path), ", "));
 }

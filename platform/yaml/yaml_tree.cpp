@@ -15,17 +15,28 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-bool is_integer(std::string_view text) {
-  if (!text.empty() && text.front() == '-') text.remove_prefix(1);
-  return !text.empty() && std::all_of(text.begin(), text.end(), is_digit);
+// Reads a number that is not in quotes, and begins and ends with a digit, after a minus if there is one.
+// Nullopt for anything else. A number beyond the range of `Number` gives `beyond`.
+template <typename Number, typename... Format>
+std::optional<Number> number_of(const YamlNode& node, Number beyond, Format... format) {
+  const std::string& text = node.text;
+  const std::size_t first = !text.empty() && text.front() == '-' ? 1 : 0;
+  if (!node.is_scalar() || node.quoted || first == text.size() || !is_digit(text[first]) ||
+      !is_digit(text.back()))
+    return std::nullopt;
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value, format...);
+  if (result.ptr != end) return std::nullopt;
+  return result.ec == std::errc::result_out_of_range ? beyond : value;
 }
 
-bool is_decimal(std::string_view text) {
-  const std::size_t point = text.find('.');
-  if (point == std::string_view::npos) return is_integer(text);
-  const std::string_view fraction = text.substr(point + 1);
-  return is_integer(text.substr(0, point)) && !fraction.empty() &&
-         std::all_of(fraction.begin(), fraction.end(), is_digit);
+// The first entry with that key, or nullptr.
+template <typename Entries>
+auto* find_in(Entries& entries, const std::string& key) {
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.key.is(key); });
+  return found == entries.end() ? nullptr : &*found;
 }
 
 std::string lower(std::string_view text) {
@@ -155,15 +166,8 @@ YamlNode YamlNode::word(const std::string& text) {
   return node;
 }
 
-const YamlNode::Entry* YamlNode::find(const std::string& key) const {
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.key.is(key); });
-  return found == entries.end() ? nullptr : &*found;
-}
-
-YamlNode::Entry* YamlNode::find(const std::string& key) {
-  return const_cast<Entry*>(std::as_const(*this).find(key));
-}
+const YamlNode::Entry* YamlNode::find(const std::string& key) const { return find_in(entries, key); }
+YamlNode::Entry* YamlNode::find(const std::string& key) { return find_in(entries, key); }
 
 YamlNode& YamlNode::add(YamlNode key, YamlNode value) {
   entries.push_back({std::move(key), std::move(value)});
@@ -171,26 +175,14 @@ YamlNode& YamlNode::add(YamlNode key, YamlNode value) {
 }
 
 std::optional<std::int64_t> integer_of(const YamlNode& node) {
-  if (!node.is_scalar() || node.quoted || !is_integer(node.text)) return std::nullopt;
-  std::int64_t value = 0;
-  const auto result = std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
-  if (result.ec == std::errc::result_out_of_range) {
-    using Limits = std::numeric_limits<std::int64_t>;
-    return node.text.front() == '-' ? Limits::min() : Limits::max();
-  }
-  return value;
+  using Limits = std::numeric_limits<std::int64_t>;
+  return number_of(node, node.text.rfind('-', 0) == 0 ? Limits::min() : Limits::max());
 }
 
 std::optional<double> decimal_of(const YamlNode& node) {
-  if (!node.is_scalar() || node.quoted || !is_decimal(node.text)) return std::nullopt;
-  double value = 0;
-  const auto result = std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
   // The number is too large for double, or so small that it rounds to 0.
-  if (result.ec == std::errc::result_out_of_range) {
-    const bool is_large = node.text.find_first_not_of("-0") < node.text.find('.');
-    return is_large ? std::numeric_limits<double>::infinity() : 0.0;
-  }
-  return value;
+  const bool is_large = node.text.find_first_not_of("-0") < node.text.find('.');
+  return number_of(node, is_large ? std::numeric_limits<double>::infinity() : 0.0, std::chars_format::fixed);
 }
 
 std::string decimal_text(double value) {

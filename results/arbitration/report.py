@@ -135,7 +135,7 @@ def draw(core, computer):
         left.plot([row["default"] for row in rows], at, marker, color=color, label=policy.replace("_", " "))
     rows = [study.only(core, shared=name, policy="fixed_priority") for name in names]
     left.plot([row["bound"] for row in rows], range(len(rows)),
-              label="bound", **study.bound(study.BLACK, of_x=True))
+              label="bound", **study.bound(study.BLACK, study.LID_OF_X))
     left.set(
     yticks=range(
         len(names)),

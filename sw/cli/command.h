@@ -2,10 +2,8 @@
 
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,14 +101,8 @@ int interrupted(const std::string& what);
 // file cannot be written.
 bool write_out(const std::string& path, const files::FileKind& kind, const std::string& bytes);
 
-// Runs a script that draws figures, and shows how long that takes.
+// Runs the script that draws figures, and shows how long that takes.
 process::CommandEnd draw(const std::string& script, const std::vector<std::string>& arguments);
-
-// Runs a script that draws figures from these files, by name, in a folder, and returns the files that it has
-// added there. Returns nullopt if interrupted. Throws std::runtime_error if the script fails.
-using NamedBytes = std::map<std::string, std::string>;
-std::optional<NamedBytes> drawn(const std::string& script, const NamedBytes& files,
-                                std::vector<std::string> options = {});
 
 // Reports now if no folder for temporary files can be made, which the command will need.
 void check_temporary_folder(process::Problems& problems);

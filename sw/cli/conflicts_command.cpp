@@ -7,7 +7,6 @@
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/output_folder.h"
-#include "sw/process/command.h"
 #include "sw/report/conflicts_text.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/recorded_run.h"
@@ -19,16 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kConflictsScript = "plot_conflicts.py";
 constexpr const char* kMark = "conflicts.csv";  // the file that is moved into place last
 constexpr const char* kConflictsFooter =
     "Printed are who waits at which bank for whom, and where in the picture. Written are conflicts.csv,\n"
-    "waits by tile, which is a group of four columns in the rows of results that leave at once; rows.csv,\n"
-    "cycles, waits and accesses of every frame by rows; and the figures, each with its data:\n"
-    "  bank_rows  use of the banks, and waits, by row\n"
-    "  picture    waits drawn over the left picture\n"
-    "  time_line  the frame with the most cycles: use of the banks, and waits, over its time\n"
-    "  causes     waits of each port by bank and cause\n"
+    "waits by tile, which is a group of four columns in the rows of results that leave at once; and\n"
+    "rows.csv, cycles, waits and accesses of every frame by rows. The page of report draws them.\n"
     "A RUN is repeated from its config.yaml and run.json, after a check of every input by its SHA-256, and\n"
     "must give the figures of its stats.json. The sums of what is written equal the figures of the run.";
 
@@ -50,20 +44,8 @@ struct ConflictsOptions : Options {
     }
   }
 
-  std::vector<std::string> looks() const {
-    std::vector<std::string> words;
-    for (const Option* option : {&format, &size}) {
-      if (option->is_given()) words.push_back(option->name() + "=" + option->text());
-    }
-    return words;
-  }
-
   RunOptions run{this, nullptr, "; or RUN, a folder that run --out has written"};
   Option out = Option(this, "--out", "DIR", "The folder to write, created if missing (default: no files)");
-  Option format = Option(this, "--format", "F,..", "Kinds of figures, out of png, svg, pdf; default png,svg",
-                         {goes_with(out, "DIR")});
-  Option size =
-      Option(this, "--size", "WxH", "Width and height of each figure in inches", {goes_with(out, "DIR")});
   JsonOption json{this};
 };
 
@@ -76,7 +58,7 @@ files::OutputContent content_of(const runs::RunInput& input) {
       "must be empty or hold only files that conflicts has written, with conflicts.csv: move it away, or "
       "give "
       "another folder";
-  content.names = {kMark, "rows.csv", "@(bank_rows|picture|time_line|causes).@(png|svg|pdf|csv)"};
+  content.names = {kMark, "rows.csv"};
   content.inputs = input.inputs;
   return content;
 }
@@ -103,30 +85,10 @@ Subject load(const ConflictsOptions& options) {
   return subject;
 }
 
-// What the figures show beside the tables: sums over the frames, and one frame.
-struct Shown {
-  fpga::FrameConflicts sums;
-  std::uint64_t frames = 0;
-  std::uint64_t longest = 0;         // the frame with the most cycles
-  std::uint64_t longest_cycles = 0;  // 0: none yet
-  fpga::FrameConflicts longest_frame;
-
-  void add(const fpga::FrameConflicts& frame) {
-    report::add_frame(frame, sums);
-    std::uint64_t cycles = 0;
-    for (const fpga::StripConflicts& strip : frame.strips) cycles += strip.cycles;
-    if (cycles > longest_cycles) {
-      longest = frames;
-      longest_cycles = cycles;
-      longest_frame = frame;
-    }
-    ++frames;
-  }
-};
-
 // Returns false if interrupted.
 bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::OutputFolder* folder,
-              Shown& shown) {
+              fpga::FrameConflicts& sums) {
+  std::uint64_t frames = 0;
   if (folder != nullptr) folder->append("rows.csv", stats::rows_csv_head(input.board));
   runs::ProgressLine progress(fmt::format("{} frames are simulated", input.frames),
                               runs::stepped_text(input.board, input.tables, input.camera));
@@ -138,41 +100,14 @@ bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::
     });
     simulation.take_timeline();
     for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
-      if (folder != nullptr) folder->append("rows.csv", stats::rows_csv(input.board, shown.frames, frame));
-      shown.add(frame);
+      if (folder != nullptr) folder->append("rows.csv", stats::rows_csv(input.board, frames++, frame));
+      report::add_frame(frame, sums);
     }
   }
   return !process::interrupted();
 }
 
-// The figures, drawn. Returns nullopt if interrupted.
-std::optional<NamedBytes> figures_of(const ConflictsOptions& options, const runs::RunInput& input,
-                                     const runs::Simulation& simulation, const Shown& shown,
-                                     const std::string& conflicts_csv) {
-  const platform::BoardConfig& board = input.board;
-  const std::string head = stats::rows_csv_head(board);
-  nlohmann::ordered_json about = {{"board", board.name},          {"width", board.image.width},
-                                  {"height", board.image.height}, {"clock_mhz", board.fpga.clock_mhz},
-                                  {"frames", shown.frames},       {"frame", shown.longest}};
-  NamedBytes files = {
-      {kMark, conflicts_csv},
-      {"sums.csv", head + stats::rows_csv(board, 0, shown.sums)},
-      {"frame.csv", head + stats::rows_csv(board, shown.longest, shown.longest_frame)},
-      {"about.json", about.dump()},
-  };
-  if (!input.timing_only) {
-    const kernels::GrayImage& left = input.pairs->pair(simulation.last().number).left;
-    const auto pixels = input.tables.left ? kernels::rectify(left, *input.tables.left).pixels : left.pixels;
-    files["picture.raw"] = std::string(pixels.begin(), pixels.end());
-  }
-  return drawn(kConflictsScript, files, options.looks());
-}
-
 int conflicts(const ConflictsOptions& options) {
-  if (!options.looks().empty()) {  // refused before anything is simulated if they are wrong
-    const auto end = process::run_script(kConflictsScript, options.looks());
-    if (end.status != 0) process::refuse(end.errors.substr(0, end.errors.find_last_not_of('\n') + 1));
-  }
   Subject subject = load(options);
   runs::RunInput& input = subject.input;
   std::optional<files::OutputFolder> folder;
@@ -182,8 +117,8 @@ int conflicts(const ConflictsOptions& options) {
   Binder binder;
   const auto simulation =
       runs::make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
-  Shown shown;
-  if (!simulate(*simulation, input, folder ? &*folder : nullptr, shown))
+  fpga::FrameConflicts sums;
+  if (!simulate(*simulation, input, folder ? &*folder : nullptr, sums))
     return interrupted("nothing is written");
   const platform::Statistics statistics = simulation->statistics();
   for (const std::string& identity : statistics.failed)
@@ -192,14 +127,10 @@ int conflicts(const ConflictsOptions& options) {
   if (subject.recorded)
     runs::check_repeated(*subject.recorded, runs::figures_of(statistics, simulation->last(), input));
   if (folder) {
-    const std::string csv = stats::conflicts_csv(input.board, *simulation->conflicts());
-    const auto figures = figures_of(options, input, *simulation, shown, csv);
-    if (!figures) return interrupted("nothing is written");
-    for (const auto& [name, bytes] : *figures) folder->add(name, bytes);
-    folder->add(kMark, csv);
+    folder->add(kMark, stats::conflicts_csv(input.board, *simulation->conflicts()));
     folder->commit();
   }
-  const auto document = report::conflicts_document(input.board, *simulation->conflicts(), shown.sums);
+  const auto document = report::conflicts_document(input.board, *simulation->conflicts(), sums);
   runs::say_lost_pixels(statistics);
   process::print(options.json.is_given() ? json_text(document) : report::conflicts_text(document));
   return kDone;

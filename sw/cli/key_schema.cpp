@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "models/fpga/core_config.h"
@@ -35,15 +33,16 @@ Json list_of(const Json& items, const IntegerRule& count) {
 }
 
 Json integer_schema(const IntegerRule& rule) {
-  Json schema = {{"type", "integer"}, {"minimum", rule.min}, {"maximum", rule.max}};
-  if (rule.step == 1) return schema;
-  if (rule.min % rule.step == 0) {
-    schema["multipleOf"] = rule.step;
-    return schema;
+  if (rule.step == 1 && !rule.is_power_of_two)
+    return {{"type", "integer"}, {"minimum", rule.min}, {"maximum", rule.max}};
+  if (rule.min % rule.step == 0 && !rule.is_power_of_two) {
+    return {{"type", "integer"}, {"minimum", rule.min}, {"maximum", rule.max}, {"multipleOf", rule.step}};
   }
-  schema = {{"enum", Json::array()}};
-  for (std::int64_t value = rule.min; value <= rule.max; value += rule.step) schema["enum"].push_back(value);
-  return schema;
+  Json values = Json::array();
+  for (std::int64_t value = rule.min; value <= rule.max; ++value) {
+    if (rule.allows(value)) values.push_back(value);
+  }
+  return {{"enum", values}};
 }
 
 // A map of the keys below the path. `required`: those that must be there.
@@ -68,66 +67,50 @@ Json buffer_schema() {
                               {"additionalProperties", false}});
 }
 
-Json bank_timing(const platform::BankTimingKey& key) {
-  Json schema = integer_schema(key.rule);
-  if (key.is_power_of_two) {
-    schema = {{"enum", Json::array()}};
-    for (std::int64_t value = key.rule.min; value <= key.rule.max; value *= 2)
-      schema["enum"].push_back(value);
+// The lists, the name and `ssram.banks`; a null for any other key.
+Json special_schema(const std::string& path) {
+  if (path == "name") return {{"type", "string"}, {"minLength", 1}};
+  if (path == "fpga.priority") {
+    std::vector<std::string> ports;
+    for (const auto& group : fpga::kPortGroups) ports.emplace_back(group.name);
+    const auto count = static_cast<std::int64_t>(ports.size());
+    Json priority = list_of(word_schema(ports), {count, count});
+    priority["uniqueItems"] = true;
+    return priority;
   }
-  return key.may_be_off ? either(schema, word_schema({"off"})) : schema;
+  if (path == "matcher.filter.kernel") {
+    const IntegerRule& size = kernels::kKernelSizeRule;
+    return list_of(list_of(integer_schema(kernels::kKernelEntryRule), size), size);
+  }
+  if (path == kBanksPath) {
+    return {{"type", "object"},
+            {"propertyNames", bank_name()},
+            {"additionalProperties", reference(kBankPath)},
+            {"minProperties", memory::kBankCountRule.min},
+            {"maxProperties", memory::kBankCountRule.max}};
+  }
+  if (path == platform::key_of(platform::Buffer::kLeftLut) ||
+      path == platform::key_of(platform::Buffer::kRightLut)) {
+    Json schema = either(buffer_schema(), list_of(buffer_schema(), {1, 1}));
+    schema["anyOf"].push_back(word_schema({"none"}));
+    return schema;
+  }
+  if (platform::is_below(path, "allocation"))
+    return either(buffer_schema(), list_of(buffer_schema(), {1, platform::kMostBuffers}));
+  return nullptr;
 }
 
-// The values with code of their own.
-std::map<std::string, Json> special_schemas() {
-  std::vector<std::string> ports;
-  for (const auto& group : fpga::kPortGroups) ports.emplace_back(group.name);
-  const auto count = static_cast<std::int64_t>(ports.size());
-  Json priority = list_of(word_schema(ports), {count, count});
-  priority["uniqueItems"] = true;
-  std::vector<std::string> costs;
-  for (const kernels::CostKind kind :
-       {kernels::CostKind::kSad, kernels::CostKind::kSsd, kernels::CostKind::kZncc})
-    costs.emplace_back(kernels::name_of(kind));
-  const IntegerRule& size = kernels::kKernelSizeRule;
-  std::map<std::string, Json> schemas = {
-      {"name", {{"type", "string"}, {"minLength", 1}}},
-      {"fpga.priority", priority},
-      {"matcher.filter", either(word_schema({"none", "log7"}), whole_map_of("matcher.filter"))},
-      {"matcher.filter.kernel", list_of(list_of(integer_schema(kernels::kKernelEntryRule), size), size)},
-      {"matcher.cost", either(word_schema(costs), whole_map_of("matcher.cost"))},
-      {"pci.load", either(word_schema({"none"}), whole_map_of("pci.load"))},
-      {kBanksPath,
-       {{"type", "object"},
-        {"propertyNames", bank_name()},
-        {"additionalProperties", reference(kBankPath)},
-        {"minProperties", memory::kBankCountRule.min},
-        {"maxProperties", memory::kBankCountRule.max}}},
-  };
-  for (const platform::Buffer each :
-       {platform::Buffer::kLeftImage, platform::Buffer::kRightImage, platform::Buffer::kDisparity,
-        platform::Buffer::kLeftLut, platform::Buffer::kRightLut}) {
-    const bool is_table = each == platform::Buffer::kLeftLut || each == platform::Buffer::kRightLut;
-    const std::int64_t most = is_table ? 1 : platform::kMostBuffers;
-    schemas[platform::key_of(each)] = either(buffer_schema(), list_of(buffer_schema(), {1, most}));
-    if (is_table) schemas[platform::key_of(each)]["anyOf"].push_back(word_schema({"none"}));
-  }
-  for (const std::string& path : {std::string("ssram.default"), kBankPath}) {
-    schemas[path + ".kind"] = word_schema(platform::bank_kind_names());
-    for (const platform::BankTimingKey& key : platform::bank_timing_keys())
-      schemas[platform::below(path, key.name)] = bank_timing(key);
-  }
-  return schemas;
-}
-
+// A number, a word, or a map of the keys below.
 Json schema_of(const platform::Key& key) {
-  static const std::map<std::string, Json> kSpecial = special_schemas();
-  if (const auto found = kSpecial.find(key.path); found != kSpecial.end()) return found->second;
-  if (const auto* const decimal = std::get_if<platform::DecimalKey>(&key.kind))
-    return {{"type", "number"}, {"minimum", decimal->min}, {"maximum", decimal->max}};
-  if (const auto* const word = std::get_if<platform::WordKey>(&key.kind)) return word_schema(word->words);
-  const Json number = integer_schema(key.numbers.value());
-  return key.no_number.empty() ? number : either(number, word_schema({key.no_number}));
+  if (Json special = special_schema(key.path); !special.is_null()) return special;
+  const platform::ValueRule& rule = key.rule;
+  std::vector<Json> forms;
+  if (rule.integers) forms.push_back(integer_schema(*rule.integers));
+  if (rule.decimals)
+    forms.push_back({{"type", "number"}, {"minimum", rule.decimals->min}, {"maximum", rule.decimals->max}});
+  if (!rule.words.empty()) forms.push_back(word_schema(rule.words));
+  if (!platform::child_keys(key.path).empty()) forms.push_back(whole_map_of(key.path));
+  return forms.size() == 1 ? forms.front() : either(forms.at(0), forms.at(1));
 }
 
 // The schema of each path of a board, "image" and "image.width".
@@ -137,11 +120,11 @@ Json definitions() {
     for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1)) {
       const std::string section = key.path.substr(0, dot);
       if (platform::find_key(section) != nullptr || schemas.contains(section)) continue;
-      schemas[section] = section == kBanksPath ? special_schemas().at(kBanksPath) : map_of(section, {});
+      schemas[section] = section == kBanksPath ? special_schema(section) : map_of(section, {});
     }
     Json schema = {
         {"description", fmt::format("{}{}: {}", key.meaning,
-                                    key.unit.empty() ? "" : fmt::format(" ({})", key.unit), key.rule_text)}};
+                                    key.unit.empty() ? "" : fmt::format(" ({})", key.unit), key.rule.text)}};
     schema.update(schema_of(key));
     schemas[key.path] = std::move(schema);
   }

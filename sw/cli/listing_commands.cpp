@@ -92,7 +92,7 @@ std::string keys_json() {
   for (const auto& key : platform::keys()) {
     Json json = {{"key", key.path}, {"meaning", key.meaning}};
     if (!key.unit.empty()) json["unit"] = key.unit;
-    json["range"] = key.rule_text;
+    json["range"] = key.rule.text;
     list.push_back(std::move(json));
   }
   return json_text({{"schema", 1}, {"keys", std::move(list)}});
@@ -112,7 +112,7 @@ std::string keys_text() {
   };
   std::string text = paragraph(head("key", "unit"), indent, "meaning; below it the range or allowed values");
   for (const auto& key : keys) {
-    text += paragraph(head(key.path, key.unit), indent, key.meaning) + paragraph("", indent, key.rule_text);
+    text += paragraph(head(key.path, key.unit), indent, key.meaning) + paragraph("", indent, key.rule.text);
   }
   return text;
 }

@@ -146,25 +146,6 @@ process::CommandEnd draw(const std::string& script, const std::vector<std::strin
   return process::run_script(script, arguments, process::kPython, [&progress] { progress.show_time(); });
 }
 
-std::optional<NamedBytes> drawn(const std::string& script, const NamedBytes& files,
-                                std::vector<std::string> options) {
-  const files::TemporaryFolder temporary;
-  const std::filesystem::path& folder = temporary.path();
-  for (const auto& [name, bytes] : files) files::write_whole_file(folder / name, bytes);
-  options.insert(options.end(), {"--", folder.string()});
-  const auto end = draw(script, options);
-  if (process::interrupted()) return std::nullopt;
-  if (end.status != 0) {
-    throw std::runtime_error(
-        fmt::format("the figures cannot be drawn: {} has ended with {}: {}", script, end.status, end.errors));
-  }
-  NamedBytes figures;
-  for (const std::filesystem::path& name : files::entries(folder)) {
-    if (files.count(name) == 0) figures[name] = files::read_whole_file(folder / name);
-  }
-  return figures;
-}
-
 void check_temporary_folder(process::Problems& problems) {
   problems.attempt("", [] { const files::TemporaryFolder folder; });
 }

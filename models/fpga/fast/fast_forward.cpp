@@ -57,16 +57,12 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns) {
   find_layout();
   for (const Side side : kSides) {
     const AccessPattern* const pattern = &patterns[index_of(side)];
-    const std::size_t lane = control().lane_index(side, 0);
-    if (!control().lane(lane).has_table() || pattern->needs_all_pixels()) continue;
-    const bool is_assumed =
-        control().ports().lanes() == 1 && arbitration().is_alone(control().pixel_port(lane));
-    (is_assumed ? assumed_ : varying_)[index_of(side)] = pattern;
+    const bool has_table = control().lane(control().lane_index(side, 0)).has_table();
+    if (has_table && !pattern->needs_all_pixels()) varying_[index_of(side)] = pattern;
   }
   is_regular_ = std::all_of(varying_.begin(), varying_.end(), [](const AccessPattern* pattern) {
     return pattern == nullptr || pattern->is_identity();
   });
-  tell_assumed();
 }
 
 void FastForward::start_stepped_frame() {
@@ -74,7 +70,6 @@ void FastForward::start_stepped_frame() {
   stepped_.reset();
   is_walking_ = false;
   varying_ = {};
-  assumed_ = {};
 }
 
 // Sets can_walk_, layout_ and open_rows_. Buffers lie alike in frames if their parts lie in the same banks,
@@ -121,7 +116,6 @@ bool FastForward::follows_from_places() const {
 void FastForward::settle(std::uint64_t cycle) {
   stepped_.reset();
   leave_walk(cycle);
-  for (const Side side : kSides) resolve_accesses(side);
   if (is_host_routed_) arbitration().unroute(control().ports().host());
   is_host_routed_ = false;
 }
@@ -144,21 +138,6 @@ std::uint64_t FastForward::marks(std::size_t number) const {
 void FastForward::correct_marks() {
   for (std::size_t lane = 0; lane < control().lanes().size(); ++lane)
     control().correct_marks(lane, marks(lane));
-}
-
-// To be called before the pixel port of a side ceases to be alone on its bank, and after the last cycle of a
-// frame. Corrects the counts. From now on the pattern determines which slots need their pixels.
-void FastForward::resolve_accesses(Side side) {
-  const AccessPattern* const pattern = std::exchange(assumed_[index_of(side)], nullptr);
-  if (pattern == nullptr) return;
-  varying_[index_of(side)] = pattern;
-  is_regular_ = is_regular_ && pattern->is_identity();
-  const std::size_t lane = control().lane_index(side, 0);
-  const std::uint64_t passed = pattern->passes_before(control().lane(lane).handled());
-  control().correct_passes(lane, passed);
-  control().correct_marks(lane, marks(lane));
-  arbitration().retract_grants(control().pixel_port(lane), passed);
-  tell_assumed();
 }
 
 // `kMayRequest`: false if the host does not request, as in most cycles. That costs less.
@@ -240,9 +219,6 @@ void FastForward::route_host(std::uint64_t& cycle, const Route& route, std::uint
     cycle = run_ahead(cycle, std::max(cycle, first));
     stepped_.reset();
     leave_walk(cycle);
-    for (const Side side : kSides) {
-      if (arbitration.bank_of(control().ports().pixel(side, 0)) == route.bank) resolve_accesses(side);
-    }
   }
   arbitration.visit(control().ports().host(), route.bank, route.write);
   is_host_routed_ = true;

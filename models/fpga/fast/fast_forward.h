@@ -23,11 +23,6 @@ namespace stereotlm::fpga {
 // catch_up(). The last grant of a burst of the host ends a transition, so that a group may hold several
 // bursts.
 //
-// On a side with table whose pixel port is uncontended, each slot in the image is assumed to access its
-// pixel. A grant and a pass both take one cycle. Only the counts differ: a pass counts as a grant until
-// resolve_accesses() corrects it. With the tables of a rig transitions then repeat far more often: a frame of
-// the paper's board takes a thirtieth of the time.
-//
 // What a port requests in a striped buffer or in sdram follows from the place in the frame (FrameAreas), and
 // from the open rows (OpenRows). Where it does not, the frame is stepped: see follows_from_places().
 class FastForward : public CoreStepper {
@@ -43,7 +38,7 @@ class FastForward : public CoreStepper {
   // To be called when a frame starts that the owner steps itself.
   void start_stepped_frame();
   // To be called before the owner changes the route of the host within a frame, and after the last cycle of a
-  // frame. `cycle`: the next cycle. Corrects the counts that are provisional until then.
+  // frame. `cycle`: the next cycle.
   void settle(std::uint64_t cycle);
 
   using CoreStepper::step;
@@ -118,7 +113,7 @@ class FastForward : public CoreStepper {
     }
     return needs;
   }
-  // Whether a slot that is not empty accesses its pixel, or is assumed to.
+  // Whether a slot that is not empty accesses its pixel.
   bool accesses_pixel(Side side, const SlotCursor& slot) const {
     const AccessPattern* const varying = varying_[index_of(side)];
     return varying == nullptr || varying->needs_pixel(slot.column(), slot.row());
@@ -126,7 +121,6 @@ class FastForward : public CoreStepper {
   std::uint32_t next_entry(std::size_t lane);
   std::uint64_t marks(std::size_t lane) const;
   void correct_marks();
-  void resolve_accesses(Side side);
   std::optional<TransitionCache::Transition> find_next(std::uint64_t cycle);
   const memory::StateWords& last_words(StateNumber state, std::uint64_t cycle);
   void find_refreshes(StateNumber state, std::uint64_t cycle);
@@ -143,9 +137,6 @@ class FastForward : public CoreStepper {
     return conflicts() != nullptr && hand_over(*conflicts(), cycle, left_of_group);
   }
   bool hand_over(ConflictRecorder& conflicts, std::uint64_t cycle, std::uint64_t left_of_group);
-  void tell_assumed() {
-    if (conflicts() != nullptr) conflicts()->assume_accesses(assumed_);
-  }
   void catch_up(std::uint64_t cycle);
   StateNumber walk_varying(StateNumber state, Progress& room);
   StateNumber walk_uniform(StateNumber state, std::uint64_t consumed, Progress& room);
@@ -230,7 +221,7 @@ class FastForward : public CoreStepper {
   TransitionCache::Log in_order_;  // what has been followed and is not yet handed to the recorder
   bool is_host_routed_ = false;    // by serve_host()
   // [side]: the pattern of a side whose accesses vary. Null if all slots inside the image access their
-  // pixels, or are assumed to. Null for a side without table: LaneControl itself finds hits of the cache.
+  // pixels. Null for a side without table: LaneControl itself finds hits of the cache.
   std::array<const AccessPattern*, 2> varying_{};
   const AccessPatterns* patterns_ = nullptr;  // of a direct frame
   // [lane]: the place of a slot that the pixel port has handled, with the number of slots before it.
@@ -239,8 +230,6 @@ class FastForward : public CoreStepper {
     SlotCursor slot;
   };
   std::vector<Handled> handled_;
-  // [side]: the pattern of a side whose passes are counted as grants; null if there are none.
-  std::array<const AccessPattern*, 2> assumed_{};
 };
 
 }  // namespace stereotlm::fpga

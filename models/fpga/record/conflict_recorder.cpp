@@ -58,7 +58,6 @@ bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& contr
   if (!is_recording_) return false;
   first_cycle_ = cycle_ = cycle;
   strip_ = group_ = strip_tile_ = 0;
-  assumed_ = {};
   grants_.clear();
   for (memory::Port port = 0; port < requesters_.ports().core_size(); ++port) {
     if (!arbitration_->is_routed(port)) continue;
@@ -176,14 +175,7 @@ std::uint64_t ConflictRecorder::grants_now(const StripConflicts::Grants& of_port
   const auto& [port, bank, cycles] = of_port;
   if (arbitration_->banks_of(port) != std::uint64_t{1} << bank)
     return arbitration_->arbiter(bank).stats().grants(port);  // one of several banks
-  std::uint64_t grants = control_->port_cycles(port).granted();
-  for (const Side side : kSides) {
-    const AccessPattern* const assumed = assumed_[index_of(side)];
-    const std::size_t lane = control_->lane_index(side, 0);  // the only one of a side that is assumed
-    if (assumed != nullptr && port == control_->pixel_port(lane))
-      grants -= assumed->passes_before(control_->lane(lane).handled());
-  }
-  return grants;
+  return control_->port_cycles(port).granted();
 }
 
 // Counts the grants of the core and all stalls since the end of the strip before.

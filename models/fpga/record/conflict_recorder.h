@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "models/address_range.h"
-#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_control.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/record/requesters.h"
@@ -126,8 +125,6 @@ class ConflictRecorder {
   void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times);
   bool is_at_strip_end() const { return group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_); }
   void end_strip();
-  // [side]: the passes of the pixel port are counted as grants until this is called with null.
-  void assume_accesses(const std::array<const AccessPattern*, 2>& assumed) { assumed_ = assumed; }
 
   // For HostPort. The traffic of a burst, and that of the words which take part in the arbitration from now
   // on.
@@ -227,7 +224,6 @@ class ConflictRecorder {
   std::size_t strip_tile_ = 0;  // the first tile of this strip
   // Up to the end of the strip before: of each port of the core, at each of its banks.
   std::vector<StripConflicts::Grants> grants_;
-  std::array<const AccessPattern*, 2> assumed_{};
   // [place_of()]: the first cycle after the part of a tile in its strip.
   std::vector<std::uint64_t> ends_;
   std::vector<Served> served_;

@@ -59,7 +59,7 @@ class Steps {
                          key.path == "fpga.package" || key.path == "fpga.tables" ||  // add_tables()
                          (begins_with(key.path, "pci.load") && !board_.pci.load);
       if (stays || (is_of_computer(key.path) && !camera_)) continue;
-      std::visit([&](const auto& kind) { add_key(key, kind); }, key.kind);
+      add_key(key);
     }
   }
 
@@ -329,25 +329,29 @@ class Steps {
     add(std::move(step), change);
   }
 
-  void add_key(const Key& key, const platform::IntegerKey& integer) {
-    BoardConfig now = board_;
-    const int from = *integer.field(now);
-    std::vector<int> changes = {static_cast<int>(key.numbers->step), -static_cast<int>(key.numbers->step)};
+  // The steps of a number or a word. Any other value has no step, or one of its own.
+  void add_key(const Key& key) {
+    if (!key.access.get) return;
+    const platform::KeyValue now = key.access.get(board_);
+    if (key.rule.decimals) return add_decimals(key, std::get<double>(now));
+    if (!key.rule.integers) return add_words(key, std::get<std::string>(now));
+    if (key.rule.words.empty()) add_integers(key, std::get<std::int64_t>(now));
+  }
+  void add_integers(const Key& key, std::int64_t from) {
+    std::vector<std::int64_t> changes = {key.rule.integers->step, -key.rule.integers->step};
     // Whether pixels are lost because the FIFOs are short is seen with FIFOs that are much longer.
     if (key.path == "capture.fifo_words")
-      changes.push_back(std::max(platform::CaptureConfig{}.fifo_words, 2 * from) - from);
-    for (const int change : changes) {
+      changes.push_back(std::max(std::int64_t{platform::CaptureConfig{}.fifo_words}, 2 * from) - from);
+    for (const std::int64_t change : changes) {
       add({key.path,
            std::to_string(from),
            std::to_string(from + change),
            {},
            begins_with(key.path, "matcher.") && key.path != "matcher.rows"},
-          [&](BoardConfig& b) { *integer.field(b) += change; });
+          [&](BoardConfig& b) { key.access.set(b, from + change); });
     }
   }
-  void add_key(const Key& key, const platform::DecimalKey& decimal) {
-    BoardConfig now = board_;
-    const double from = *decimal.field(now);
+  void add_decimals(const Key& key, double from) {
     std::set<double, std::greater<>> others = {from + 1, from - 1};
     // Words of the local bus wait least if one of its clock and the FPGA's is a multiple of the other.
     const double fpga = board_.fpga.clock_mhz;
@@ -358,25 +362,22 @@ class Steps {
     others.erase(from);
     for (const double other : others) {
       add({key.path, fmt::format("{:g}", from), fmt::format("{:g}", other)},
-          [&](BoardConfig& b) { *decimal.field(b) = other; });
+          [&](BoardConfig& b) { key.access.set(b, other); });
     }
   }
-  void add_key(const Key& key, const platform::WordKey& word) {
-    const std::string now = word.get(board_);
-    for (std::size_t other = 0; other < word.words.size(); ++other) {
-      if (word.words[other] == now) continue;
+  void add_words(const Key& key, const std::string& now) {
+    for (const std::string& other : key.rule.words) {
+      if (other == now) continue;
       const bool is_line_buffer = key.path == "matcher.fetch" && board_.matcher.fetch == fpga::Fetch::kColumn;
-      std::string to = word.words[other];
+      std::string to = other;
       if (is_line_buffer && board_.matcher.rows != 1) to += ", matcher.rows 1";
       if (is_line_buffer && board_.fpga.lanes != 1) to += ", fpga.lanes 1";
       add({key.path, now, to}, [&](BoardConfig& b) {
-        word.set(b, static_cast<int>(other));
+        key.access.set(b, other);
         if (is_line_buffer) b.matcher.rows = b.fpga.lanes = 1;  // as the line buffer needs
       });
     }
   }
-  template <typename Other>
-  void add_key(const Key& /*key*/, const Other& /*kind*/) {}  // no step, or one of its own
 
   std::size_t buffers_in(const std::string& bank) const {
     std::size_t count = 0;

@@ -444,7 +444,7 @@ class PlanReader {
     const platform::Key* const key = platform::find_key(platform::schema_path(path));
     const auto allows = [&](const YamlNode& number) {
       if (path == kFramesPath) return kFramesRule.allows(platform::integer_of(number).value_or(0));
-      return key == nullptr || platform::allows_number(*key, number);
+      return key == nullptr || key->rule.allows_number(number);
     };
     std::uint64_t refused = 0;
     YamlNode first = values.at(0);

@@ -1,18 +1,15 @@
 """run --record and conflicts: where in the picture, and when in a frame, ports wait for banks."""
 
 import csv
-import os
 import re
 import signal
 import resource
-import struct
 
 import program
 from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, PROGRESS, SMALL
 from program import ProgramTest, Terminal, run, sets
 
 TABLES = ("rows.csv", "conflicts.csv")
-FIGURES = ("bank_rows", "picture", "time_line", "causes")
 SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
 # Captures into the bank of both left pictures, which the core reads.
 CAPTURES = [*CAMERA_RATES,
@@ -83,58 +80,21 @@ class Command(ConflictsTest):
         self.assertGreater(len(set(cycles)), 1)
         self.assertEqual(cycles, sorted(cycles, reverse=True), "the longest first")
 
-    @program.slow
-    def test_the_lanes_of_a_port_are_one_with_their_mean_in_figures(self):
-        self.succeeds(run("conflicts", "eight-banks-four-lanes", *SMALL, *PRELOADED, "--timing-only", "--out",
-                          self.out, *sets("allocation.disparity={rows: [bank0, bank5]}")))
-        sums = {}
-        for row in self.table("conflicts.csv"):
-            key = (row["port"].split(".")[0], row["bank"], row["by"].split(".")[0])
-            sums[key] = sums.get(key, 0) + int(row["cycles"]) / (4 if "." in row["port"] else 1)
-        causes = {(row["port"], row["bank"], row["by"]): float(row["cycles"])
-                  for row in self.table("causes.csv")}
-        self.assertGreater(len(causes), 2)
-        self.assertLess(len(causes), len({(row["port"], row["bank"], row["by"])
-                                          for row in self.table("conflicts.csv")}))
-        self.assertEqual(set(causes), set(sums))
-        for key, cycles in causes.items():
-            self.assertAlmostEqual(cycles, sums[key])
-
-    def test_it_writes_tables_and_figures(self):
-        options = ["--format", "png,svg,pdf", "--out", self.out]
-        self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
-        endings = (".png", ".svg", ".pdf", ".csv")
-        names = {*TABLES, *(figure + ending for figure in FIGURES for ending in endings)}
-        self.assertEqual({path.name for path in self.out.iterdir()}, names)
+    def test_it_writes_the_tables_of_a_recorded_run(self):
+        self.succeeds(run("conflicts", *self.scene, *CAPTURES, "--out", self.out))
+        self.is_in(self.out, *TABLES)
         recorded = self.folder / "recorded"
         self.succeeds(run("run", *self.scene, *CAPTURES, "--record", "--out", recorded))
         for name in TABLES:
             self.assertEqual((self.out / name).read_bytes(), (recorded / name).read_bytes())
-        lost = sum(int(row["stall_cycles"]) for row in self.table("picture.csv"))
-        of_tiles = sum(int(row["cycles"]) for row in self.table("conflicts.csv") if row["first_row"])
-        self.assertEqual(lost, of_tiles)
-        self.assertEqual(sum(int(row["cycles"]) for row in self.table("causes.csv")),
-                         sum(row["cycles"] for row in self.stats(recorded)["blame"]))
-        self.assertIn("for host capture", (self.out / "causes.svg").read_text())
         with self.unchanged(self.out):  # the same bytes again
-            self.succeeds(run("conflicts", *self.scene, *CAPTURES, *options))
+            self.succeeds(run("conflicts", *self.scene, *CAPTURES, "--out", self.out))
 
     def test_a_full_disk_is_named_and_leaves_nothing(self):
-        no_fonts = {"MPLCONFIGDIR": str(self.folder)}  # matplotlib's list of fonts is there, or is written
-        for blocks, variables in ((1, {}), (10, {}), (30, {}), (10, no_fonts)):
-            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000 * blocks, 1000 * blocks))
-            process = run("conflicts", *self.scene, *PRELOADED, "--out", self.out, preexec_fn=limit,
-                          env={**os.environ, **variables})
-            self.assertEqual(self.ended(process, 1, "File too large")[0][:17], "stereotlm: error:")
-            self.assertNotIn("Traceback", process.stderr)
-            self.assertFalse(self.out.exists())
-
-    def test_without_stalls_there_is_no_figure_of_their_causes(self):
-        self.succeeds(run("conflicts", *self.scene, *PRELOADED, "--timing-only", "--size", "5x6", "--out",
-                          self.out))
-        self.assertFalse((self.out / "causes.png").exists())
-        size = struct.unpack(">II", (self.out / "bank_rows.png").read_bytes()[16:24])
-        self.assertEqual(size, (1000, 1200))
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        process = run("conflicts", *self.scene, *PRELOADED, "--out", self.out, preexec_fn=limit)
+        self.assertEqual(self.ended(process, 1, "File too large")[0][:17], "stereotlm: error:")
+        self.assertFalse(self.out.exists())
 
     def test_a_run_is_repeated(self):
         recorded = self.folder / "recorded"
@@ -146,13 +106,6 @@ class Command(ConflictsTest):
         (recorded / "stats.json").write_text(stats.replace('"contended_cycles": 0', '"contended_cycles": 1'))
         self.fails(run("conflicts", recorded), "repeated, it has other figures")
 
-    def test_names_are_text(self):
-        board = self.file("board.yaml", b"extends: fpl2003\nname: $x_{<script>}$\n")
-        self.scene[0] = str(board)
-        self.succeeds(run("conflicts", *self.scene, *PRELOADED, *SHARED, "--format", "svg", "--out",
-                          self.out))
-        self.assertIn("Board $x_{&lt;script&gt;}$", (self.out / "causes.svg").read_text())
-
     def test_its_example_is_a_command_of_its_own(self):
         example = self.refused(run("conflicts", "fpl2003"))[-1]
         begin = "stereotlm: note: a complete command: stereotlm conflicts fpl2003 "
@@ -163,13 +116,9 @@ class Command(ConflictsTest):
         self.succeeds(run("run", *self.scene, *PRELOADED, "--out", recorded))
         self.refused(run("conflicts"), "BOARD: missing")
         self.all_refused([
-            ([*self.scene, "--format", "png"], "--format: goes with --out DIR"),
-            ([*self.scene, "--size", "5x5"], "--size: goes with --out DIR"),
             ([recorded, "--frames", "2"], "a run is repeated as it was: no option of run goes with it"),
             ([recorded, *SHARED], "a run is repeated as it was"),
             ([recorded, "--out", recorded], "of run holds nothing else: must lie elsewhere"),
-            ([recorded, "--format", "gif", "--out", self.out], "--format = gif: must be png, svg, pdf"),
-            ([recorded, "--size", "1x5", "--out", self.out], "--size = 1x5: must be WIDTHxHEIGHT in inches"),
         ], lambda *arguments: run("conflicts", *arguments))
         self.assertFalse(self.out.exists())
 

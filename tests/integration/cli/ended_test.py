@@ -94,7 +94,7 @@ class Commands(EndedTest):
         self.ended(["explain", "fpl2003", *FRAMES], 2, signal.SIGTERM)
         self.ended(["diff", self.out, self.out], 2, signal.SIGTERM)
         self.ended(["report", self.out, "--out", "page.html"], 1, signal.SIGTERM)
-        self.ended(["plot", self.folder / "points.db", "--out", "figures"], "plot_all.py", signal.SIGQUIT)
+        self.ended(["plot", self.folder / "points.db", "--out", "figures"], "figures.py", signal.SIGQUIT)
         with contextlib.closing(sqlite3.connect(self.folder / "points.db", isolation_level=None)) as reader:
             reader.execute("BEGIN EXCLUSIVE")  # merge waits for its end
             self.ended(["merge", "new.db", self.folder / "points.db"], 1)

@@ -29,7 +29,8 @@ class Study(ProgramTest):
         said = self.succeeds(subprocess.run(command, capture_output=True, text=True, timeout=300, check=False,
                                             env=env))
         self.assertIn("14 claims of the paper: 5 not confirmed, 6 in part, 3 confirmed.\n", said)
-        names = [name + ending for name in ("table1", "table2", "banks") for ending in (".csv", ".png", ".svg")]
+        names = [name + ending for name in ("table1", "table2", "banks")
+                 for ending in (".csv", ".png", ".svg")]
         self.is_in(self.out, "paper.md", "claims.csv", "costs.csv", *names)
         found = {path.name: path.read_bytes() for path in self.out.iterdir()}
         for name in ("table1.csv", "table2.csv", "banks.csv"):
@@ -76,7 +77,7 @@ class Rules(ProgramTest):
 
 class Command(ProgramTest):
     def test_is_refused_and_names_the_study(self):
-        self.refused_in_one_line(run("paper", "--out", self.out), "'paper': is a study now: results/paper/run")
+        self.refused_in_one_line(run("paper", "--out", self.out), "is a study now: results/paper/run")
 
 
 if __name__ == "__main__":

@@ -449,23 +449,14 @@ class Outputs(ProgramTest):
     def test_folders_with_files_of_others_under_its_names_are_refused(self):
         scene = ["fpl2003", *SMALL, *PRELOADED, "--synthetic", "1"]
         own = {"conflicts": ["conflicts", *scene, "--out"], "plot": ["plot", self.store, "--out"]}
-        for name, entry in (("conflicts", "rows.csv"), ("conflicts", "conflicts.csv"),
-                            ("conflicts", "picture.png"),
-                            ("plot", "window.csv"), ("plot", "use.png")):
+        for name, entry in (("conflicts", "rows.csv"), ("conflicts", "conflicts.csv"), ("plot", "window.csv"),
+                            ("plot", "stalls.png")):
             path = self.file(f"{name}/{entry}", "mine")
             with self.subTest(name=name, entry=entry), self.unchanged(self.folder):
                 self.refused_in_one_line(run(*own[name], path.parent), f"holds '{entry}'")
             path.unlink()
         for _ in range(2):
             self.succeeds(run(*own["conflicts"], self.out))
-        picture = self.out / "picture.png"
-        picture.write_bytes(self.left.read_bytes())
-        pair = ["--left", picture, "--right", self.right]
-        recorded = self.folder / "recorded"
-        self.succeeds(run("run", *scene[:-2], *pair, "--out", recorded))
-        for command in (["conflicts", *scene[:-2], *pair], ["conflicts", recorded]):
-            with self.unchanged(self.folder):
-                self.refused_in_one_line(run(*command, "--out", self.out), f"--left '{picture}' lies in it")
 
     @program.slow
     def test_an_interrupted_command_leaves_nothing_hidden(self):

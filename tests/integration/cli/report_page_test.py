@@ -18,7 +18,7 @@ import unittest
 
 import program
 from browser import Browser, number
-from plots import make_database, script
+from plots import draw, make_database
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets, shared_folder
 from report_data import data_of, with_data
 from selenium.common.exceptions import WebDriverException
@@ -516,10 +516,8 @@ class Rates(PageTest):
             column, sense = axis.split(":")
             self.browser.choose(f"scatter-{name}", column)
             self.browser.choose(f"best-{name}", sense)
-        out = pathlib.Path(tempfile.mkdtemp(dir=self.out.parent))
-        self.succeeds(script("plot_pareto.py", self.store, "--out", out, "--pareto", ",".join(axes)))
-        shown, drawn = (list(csv.DictReader(io.StringIO(text)))
-                        for text in (self.browser.csv("scatter"), (out / "pareto.csv").read_text()))
+        shown = list(csv.DictReader(io.StringIO(self.browser.csv("scatter"))))
+        _, drawn, _ = draw("pareto", self.store, pareto=",".join(axes))
         return [sorted((float(row["area.slices"]), float(row["frames_per_second.steady"])) for row in rows)
                 for rows in (shown, [row for row in drawn if row["front"] == "1"])]
 

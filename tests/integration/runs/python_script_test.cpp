@@ -25,16 +25,15 @@ TEST_F(PythonScript, ReportsThatPythonOrTheScriptIsMissing) {
   const std::string python = path("python3");
   const auto missing_python = ThrowsMessage<std::runtime_error>(
       HasSubstr("'" + python + "', which draws the figures: cannot be started: No such file"));
-  EXPECT_THAT([&] { process::run_script("plot_conflicts.py", {}, python); }, missing_python);
-  const auto missing_script =
-      ThrowsMessage<std::runtime_error>(HasSubstr("/plots/plot_nothing.py': not found"));
-  EXPECT_THAT([] { process::run_script("plot_nothing.py", {}); }, missing_script);
+  EXPECT_THAT([&] { process::run_script("figures.py", {}, python); }, missing_python);
+  const auto missing_script = ThrowsMessage<std::runtime_error>(HasSubstr("/plots/nothing.py': not found"));
+  EXPECT_THAT([] { process::run_script("nothing.py", {}); }, missing_script);
 }
 
 TEST_F(PythonScript, ReturnsTheStatusAndTheErrorsOfAScript) {
-  const auto end = process::run_script("plot_conflicts.py", {"--", path("in")});
-  EXPECT_EQ(end.status, 1);
-  EXPECT_THAT(end.errors, HasSubstr(path("in/table1.csv")));
+  const auto end = process::run_script("figures.py", {"--out", path("out"), "--", path("in.db")});
+  EXPECT_EQ(end.status, 2);
+  EXPECT_THAT(end.errors, HasSubstr(path("in.db") + ": cannot be opened"));
 }
 
 }  // namespace

@@ -68,7 +68,6 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
               columns.size() * columns.front().size() - count(columns, SlotAccess::kNone));
     ASSERT_EQ(pattern.pixel_accesses(), count(columns, SlotAccess::kTableAndImage));
     const FrameGeometry geometry(config);
-    std::uint64_t passes = 0;
     std::uint64_t slot = 0;
     std::vector<bool> pixels(geometry.slots + 256 + 1);  // beyond the end of the frame there are none
     for (SlotCursor place(geometry, 0); !place.done(); place.advance(), ++slot) {
@@ -77,12 +76,7 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
         ASSERT_EQ(pattern.needs_pixel(place.column(), place.row()), access == SlotAccess::kTableAndImage);
       }
       pixels[slot] = access == SlotAccess::kTableAndImage;
-      if (slot % 7 == 0) {
-        ASSERT_EQ(pattern.passes_before(slot), passes) << slot;
-      }
-      if (access == SlotAccess::kTable || access == SlotAccess::kTableAndCache) ++passes;
     }
-    ASSERT_EQ(pattern.passes_before(geometry.slots), passes);
     std::uint64_t expected = 0;
     for (slot = pixels.size(); slot-- > 0;) {
       expected = expected << 1U | std::uint64_t{pixels[slot]};

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "tests/unit/platform/config/board_files.h"
@@ -238,8 +237,7 @@ TEST_P(BoardKeys, RefuseAValueBeyondTheirRuleAtItsPlace) {
   for (const std::string& value : key.refused) {
     const ChangedBoard board = board_with(key.path, value);
     const std::string shown = value.size() > 60 ? value.substr(0, 57) + "..." : value;
-    const bool is_word =
-        std::holds_alternative<WordKey>(board_key(key.path).kind) || key.path == "matcher.cost";
+    const bool is_word = key.rule == listed(board_key(key.path).rule.words) || key.path == "matcher.cost";
     const std::string text =
         fmt::format("{} = {}: {}{}", key.path, shown, is_word ? "must be one of " : "", key.rule);
     EXPECT_EQ(refusal_of(board.text), board.place + ": " + text);
@@ -293,7 +291,7 @@ TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksFiltersAndCosts) {
   std::set<std::string> listed;
   for (const Key& key : keys()) {
     EXPECT_FALSE(key.meaning.empty()) << key.path;
-    EXPECT_FALSE(key.rule_text.empty()) << key.path;
+    EXPECT_FALSE(key.rule.text.empty()) << key.path;
     EXPECT_TRUE(listed.insert(key.path).second) << key.path;
   }
   EXPECT_EQ(listed, expected);
@@ -307,7 +305,7 @@ TEST(BoardKeysTable, SaysWhichKeysMayBeMissing) {
     const std::size_t value = text.find("DROP");
     const std::size_t begin = text.rfind('\n', value) + 1;  // npos + 1 is 0
     text.erase(begin, text.find('\n', value) + 1 - begin);
-    const std::string missing = fmt::format(": {}: missing: {}", key.path, key.rule_text);
+    const std::string missing = fmt::format(": {}: missing: {}", key.path, key.rule.text);
     EXPECT_EQ(refusal_of(text).find(missing) == std::string::npos, key.is_optional) << key.path;
   }
 }
@@ -316,7 +314,7 @@ TEST(BoardKeysTable, GivesTheRangesThatMessagesGive) {
   for (const KeyCase& key : key_cases()) {
     for (const Key& info : keys()) {
       if (info.path == key.path) {
-        EXPECT_EQ(info.rule_text, key.rule) << key.path;
+        EXPECT_EQ(info.rule.text, key.rule) << key.path;
       }
     }
   }

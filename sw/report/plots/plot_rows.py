@@ -1,4 +1,0 @@
-#!/usr/bin/python3
-import figures
-
-figures.main("Frames per second and area against the rows of results at once.", "rows")
