@@ -83,37 +83,36 @@ void each(const Fields& fields, const Visit& visit) {
   std::apply([&](const auto&... field) { (visit(field), ...); }, fields);
 }
 
-// Writer.
-
-template <typename Value>
-Json json_of(const Value& value);
-
-template <typename Object, typename Value>
-void add(Json& json, const Object& object, const Field<Object, Value>& field) {
-  const Value& value = object.*field.member;
-  if (is_left_out(field, value)) return;
-  if constexpr (IsOptional<Value>::value) {
-    json[field.key] = json_of(*value);
-  } else {
-    json[field.key] = json_of(value);
-  }
+// Calls visit(path, field, value) for each Field of an object that lies at this path of a document.
+template <typename Object, typename Visit>
+void each_value(Object& object, const Pointer& path, const Visit& visit) {
+  each(fields_of(&object), [&](const auto& field) { visit_field(object, path, field, visit); });
 }
-template <typename Object, typename... Fields>
-void add(Json& json, const Object& object, const Part<Fields...>& part) {
-  each(part.fields, [&](const auto& field) { add(json[part.key], object, field); });
+template <typename Object, typename Struct, typename Value, typename Visit>
+void visit_field(Object& object, const Pointer& path, const Field<Struct, Value>& field, const Visit& visit) {
+  visit(path / field.key, field, object.*field.member);
 }
-template <typename Object, typename Value>
-void add(Json& json, const Object& object, const Merged<Object, Value>& merged) {
-  const std::optional<Value>& value = object.*merged.member;
-  if (value) each(fields_of(&*value), [&](const auto& field) { add(json, *value, field); });
+template <typename Object, typename... Fields, typename Visit>
+void visit_field(Object& object, const Pointer& path, const Part<Fields...>& part, const Visit& visit) {
+  each(part.fields, [&](const auto& field) { visit_field(object, path / part.key, field, visit); });
+}
+template <typename Object, typename Struct, typename Value, typename Visit>
+void visit_field(Object& object, const Pointer& path, const Merged<Struct, Value>& merged,
+                 const Visit& visit) {
+  if (auto& value = object.*merged.member) each_value(*value, path, visit);
 }
 
+// The JSON of a value.
 template <typename Value>
 Json json_of(const Value& value) {
   if constexpr (HasFields<Value>::value) {
     Json json = Json::object();
-    each(fields_of(&value), [&](const auto& field) { add(json, value, field); });
+    each_value(value, Pointer(), [&](const Pointer& path, const auto& field, const auto& its) {
+      if (!is_left_out(field, its)) json[path] = json_of(its);
+    });
     return json;
+  } else if constexpr (IsOptional<Value>::value) {
+    return json_of(*value);
   } else if constexpr (IsVector<Value>::value) {
     Json json = Json::array();
     for (const auto& item : value) json.push_back(json_of(item));
@@ -123,11 +122,10 @@ Json json_of(const Value& value) {
   }
 }
 
-// Schema.
-
 template <typename Value>
 std::vector<Property> properties_of();
 
+// The schema of the values of a type.
 template <typename Value>
 Schema schema_of() {
   if constexpr (HasFields<Value>::value) {

@@ -48,7 +48,9 @@ class StatsReader {
   template <typename Value>
   void read(const Pointer& path, Value& value) const {
     if constexpr (HasFields<Value>::value) {
-      each(fields_of(&value), [&](const auto& field) { read_field(path, value, field); });
+      each_value(value, path, [&](const Pointer& its_path, const auto& field, auto& its) {
+        if (!is_left_out(field, its) || has(its_path)) read(its_path, its);
+      });
     } else {
       const Json& json = at(path);
       if constexpr (std::is_same_v<Value, std::string>) {
@@ -140,20 +142,6 @@ class StatsReader {
 
   // The area follows from the board.
   void read(const Pointer& /*path*/, area::Area& /*area*/) const {}
-
-  template <typename Object, typename Value>
-  void read_field(const Pointer& path, Object& object, const Field<Object, Value>& field) const {
-    Value& value = object.*field.member;
-    if (!is_left_out(field, value) || has(path / field.key)) read(path / field.key, value);
-  }
-  template <typename Object, typename... Fields>
-  void read_field(const Pointer& path, Object& object, const Part<Fields...>& part) const {
-    each(part.fields, [&](const auto& field) { read_field(path / part.key, object, field); });
-  }
-  template <typename Object, typename Value>
-  void read_field(const Pointer& path, Object& object, const Merged<Object, Value>& merged) const {
-    if (auto& value = object.*merged.member) read(path, *value);
-  }
 
   // The line of a value, in the form of json_text().
   std::ptrdiff_t line_of(const Pointer& path) const {

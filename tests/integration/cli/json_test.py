@@ -24,7 +24,9 @@ class Json(ProgramTest):
         schema = json.loads(self.succeeds(run("keys", "--schema", command)))
         jsonschema.Draft202012Validator.check_schema(schema)
         document = json.loads(text)
-        jsonschema.Draft202012Validator(schema).validate(document)
+        validator = jsonschema.Draft202012Validator(schema)
+        validator.validate(document)
+        self.assertFalse(validator.is_valid({**document, "more": 1}), command)
         return document
 
     def small_run(self, *options):
