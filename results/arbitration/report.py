@@ -156,7 +156,7 @@ def draw(core, computer):
     for axis in (middle, right):
         axis.set(yticks=range(len(names)), yticklabels=[], ylim=(-0.5, len(names) - 0.5))
         axis.hlines([place + 0.5 for place in range(len(names) - 1)], 0, 1,
-                    transform=axis.get_yaxis_transform(), color=study.GRID, linewidth=0.8)
+                    transform=axis.get_yaxis_transform(), color="#DDDDDD", linewidth=0.8)
         axis.grid(False, axis="y")
     middle.set(
     yticklabels=[
