@@ -1,6 +1,7 @@
 """What the studies share: the points of a sweep's database, tables, and figures whose bytes depend on the
 data alone."""
 import csv
+import json
 import pathlib
 import re
 import sqlite3
@@ -13,29 +14,30 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "sw" / "report" / "plots"))
-from figures import (BLACK, BLUE, GRAY, GREEN, LID_OF_X, ORANGE, PINK, SKY, VERMILION,  # noqa: E402, F401
-                     Points, bound, encoded, use_style)
+from figures import (BLACK, BLUE, COLORS, GRAY, GREEN, LID_OF_X, ORANGE, PINK, SKY,  # noqa: E402, F401
+                     VERMILION, Points, bound, encoded, use_style)
 
 use_style()
 
-# A row that `allocate` prints: banks, allocations, simulated, best rate, its uncertainty (only for a whole
-# computer), its percentage of the best of all, bound, number of allocations that tie, one of them.
-ROW = re.compile(r" +(\d+) +(\d+) +(\d+) +(\d+\.\d+)(?: ± (\d+\.\d+))? +\d+\.\d+ +(\d+\.\d+) +(\d+)  (.*)")
-
-
 def searched(path):
-    """What `allocate` has printed into this file. By number of banks: the values of the row, such as the best
-    rate and
-    an allocation that has it."""
+    """What `allocate --json` has printed into this file. By number of banks: the values of the row, such as
+    the best rate and an allocation that has it."""
     found = {}
-    for line in path.read_text().splitlines():
-        if row := ROW.fullmatch(line):
-            banks, allocations, simulated, best, uncertainty, bound, tied, witness = row.groups()
-            found[int(banks)] = {"allocations": int(allocations), "simulated": int(simulated),
-                                 "best": float(best), "uncertainty": float(uncertainty or 0),
-                                 "bound": float(bound),
-                                 "tied": int(tied), "witness": witness}
+    for row in json.loads(path.read_text())["banks"]:
+        if not (rates := row.get("frames_per_second")):
+            continue  # none counts
+        found[row["banks"]] = {
+            "allocations": row["allocations"], "simulated": row["simulated"],
+            "best": rates.get("core", rates.get("steady")),
+            "uncertainty": rates.get("steady_uncertainty", 0), "bound": row["bound_frames_per_second"],
+            "tied": row["tied"], "witness": ", ".join(map(placed, row["sets"]))}
     return found
+
+
+def placed(allocated):
+    """A word of --set: "left_image bank0 bank1" of "allocation.left_image=[bank0, bank1]"."""
+    name, _, banks = allocated.removeprefix("allocation.").partition("=")
+    return " ".join([name, *banks.strip("[]").split(", ")])
 
 
 def fewest_of_best(rates):
@@ -51,8 +53,8 @@ def best_table(searches, banks):
     for what, rates in searches:
         fewest = fewest_of_best(rates)
         cells = (f"{rates[number]['best']:.3f}" if number in rates else "" for number in banks)
-        lines.append([what, *(f"**{cell}**" if number ==
-                     fewest else cell for number, cell in zip(banks, cells))])
+        lines.append([what, *(f"**{cell}**" if number == fewest else cell
+                              for number, cell in zip(banks, cells))])
     return markdown(["", *(f"{number}" for number in banks)], lines)
 
 
@@ -101,16 +103,11 @@ def page(text):
     blocks = []
     for block in re.split(r"(\n\n+|\n(?=- ))", text):
         if block and not block.startswith(("|", "!", "#", "\n")):
+            words = " ".join(block.split()).replace(" %", "\N{NO-BREAK SPACE}%")
             indent = "  " if block.startswith("- ") else ""
-            text = " ".join(block.split()).replace(" %", "\N{NO-BREAK SPACE}%")
-            block = textwrap.fill(
-    text,
-    110,
-    subsequent_indent=indent,
-    break_long_words=False,
-    break_on_hyphens=False).replace(
-        "\N{NO-BREAK SPACE}",
-         " ") + "\n" * block.endswith("\n")
+            wrapped = textwrap.fill(words, 110, subsequent_indent=indent, break_long_words=False,
+                                    break_on_hyphens=False)
+            block = wrapped.replace("\N{NO-BREAK SPACE}", " ") + "\n" * block.endswith("\n")
         blocks.append(block)
     return "".join(blocks)
 

@@ -1,6 +1,6 @@
 """usage: report.py QUEUES.db
 
-Reads QUEUES.db, and the texts that `allocate` has printed, beside this script. Writes banks.png, queues.csv
+Reads QUEUES.db, and what `allocate --json` has printed beside this script. Writes banks.png, queues.csv
 and README.md beside it.
 """
 import pathlib
@@ -21,22 +21,9 @@ SEARCHES = {
     "computer_sync_burst": "computer, sync burst, 2 clocks",
     "computer_long_queues": "computer, ZBT, queues of 32 slots",
 }
-DRAWN = {
-    "core": (
-        "o-",
-        study.BLUE),
-        "core_sync_burst": (
-            "o--",
-            study.SKY),
-            "computer": (
-                "s-",
-                study.VERMILION),
-                "computer_sync_burst": (
-                    "s--",
-                    study.ORANGE),
-                    "computer_long_queues": (
-                        "s-",
-                         study.GREEN)}
+DRAWN = {"core": ("o-", study.BLUE), "core_sync_burst": ("o--", study.SKY),
+         "computer": ("s-", study.VERMILION), "computer_sync_burst": ("s--", study.ORANGE),
+         "computer_long_queues": ("s-", study.GREEN)}
 BANKS = range(1, 9)
 
 
@@ -53,27 +40,14 @@ def draw(found, queues):
         rates = found[name]
         left.plot(list(rates), [row["best"] for row in rates.values()],
                   look, color=color, markersize=5, label=SEARCHES[name])
-    left.set(
-    title="the best of all allocations",
-    xlabel="banks",
-    ylabel="best rate, frames/s",
-    xticks=range(
-        3,
-        9),
-        ylim=(
-            0,
-             20))
+    left.set(title="the best of all allocations", xlabel="banks", ylabel="best rate, frames/s",
+             xticks=range(3, 9), ylim=(0, 20))
     study.legend(left, loc="lower right")
     right.axhline(found["computer"][8]["best"], color=study.GRAY, linestyle="--", label="8 banks, 16 slots")
     right.plot([point["lane_fifo_slots"] for point in queues], [point["steady"]
                for point in queues], "s-", color=study.VERMILION, markersize=5, label="5 banks")
-    right.set(
-    title="longer queues, five banks",
-    xlabel="slots of a lane's queue (fpga.lane_fifo_slots)",
-    ylabel="whole computer, steady frames/s",
-    ylim=(
-        16,
-         18.2))
+    right.set(title="longer queues, five banks", xlabel="slots of a lane's queue (fpga.lane_fifo_slots)",
+              ylabel="whole computer, steady frames/s", ylim=(16, 18.2))
     study.legend(right, loc="lower right")
     study.save(figure, HERE / "banks.png")
 
@@ -95,11 +69,11 @@ with an ideal host. Of the computer: steady, over 120 frames, cameras at 29.97 H
 
 {best}
 
-The core alone (`core.txt`):
+The core alone (`core.json`):
 
 {core}
 
-The whole computer (`computer.txt`); behind ± stands what 120 frames leave open:
+The whole computer (`computer.json`); behind ± stands what 120 frames leave open:
 
 {computer}
 
@@ -138,7 +112,7 @@ of buffers need a search of their own: give `--set` to `allocate`.
 
 
 def main():
-    found = {name: study.searched(HERE / f"{name}.txt") for name in SEARCHES}
+    found = {name: study.searched(HERE / f"{name}.json") for name in SEARCHES}
     queues = study.points(sys.argv[1], lane_fifo_slots="fpga.lane_fifo_slots", core="frames_per_second.core",
                           steady="frames_per_second.steady", slices="area.slices")
     queues.sort(key=lambda point: point["lane_fifo_slots"])
@@ -146,26 +120,13 @@ def main():
     draw(found, queues)
     core, computer = found["core"], found["computer"]
     text = TEXT.format(
-    files=",\n".join(
-        f"[{name}.txt]({name}.txt)" for name in SEARCHES),
-        best=study.best_table(
-            [
-                (what,
-                found[name]) for name,
-                what in SEARCHES.items()],
-                BANKS),
-                core=study.witness_table(core),
-                computer=study.witness_table(computer),
-                queues=queues_table(queues),
-                core4=core[4]["best"],
-                core5=core[5]["best"],
-                best4=computer[4]["best"],
-                best5=computer[5]["best"],
-                best6=computer[6]["best"],
-                best7=computer[7]["best"],
-                long4=found["computer_long_queues"][4]["best"],
-                 long5=found["computer_long_queues"][5]["best"])
-    (HERE / "README.md").write_text(text)
+        files=",\n".join(f"[{name}.json]({name}.json)" for name in SEARCHES),
+        best=study.best_table([(what, found[name]) for name, what in SEARCHES.items()], BANKS),
+        core=study.witness_table(core), computer=study.witness_table(computer), queues=queues_table(queues),
+        core4=core[4]["best"], core5=core[5]["best"], best4=computer[4]["best"], best5=computer[5]["best"],
+        best6=computer[6]["best"], best7=computer[7]["best"],
+        long4=found["computer_long_queues"][4]["best"], long5=found["computer_long_queues"][5]["best"])
+    (HERE / "README.md").write_text(study.page(text))
 
 
 main()

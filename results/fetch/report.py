@@ -16,35 +16,45 @@ DISPARITIES = 80
 def core_table(found):
     lines = []
     for window in sorted({point["window"] for point in found}):
-        column, lines_kept = (study.only(found, window=window, disparities=DISPARITIES,
-                              fetch=fetch) for fetch in FETCHES)
-        lines.append([f"{window}x{window}",
-    f"{column['rate']:.2f}",
-    f"{lines_kept['rate']:.2f}",
-    f"{lines_kept['rate'] / column['rate']:.1f}",
-    f"{column['slices']:.1f}",
-    f"{lines_kept['slices']:.1f}",
-    column["block_rams"],
-    lines_kept["block_rams"],
-    *(most(found,
-    window,
-     fetch) for fetch in FETCHES)])
-    return study.markdown(["window",
-    "column, frames/s",
-    "line buffer",
-    "times",
-    "column, % of the slices",
-    "line buffer",
-    "column, block RAMs",
-    "line buffer",
-    "column, most D of the sweep that fits",
-    "line buffer"],
-     lines)
+        column, lines_kept = (
+            study.only(found, window=window, disparities=DISPARITIES, fetch=fetch) for fetch in FETCHES
+        )
+        lines.append(
+            [
+                f"{window}x{window}",
+                f"{column['rate']:.2f}",
+                f"{lines_kept['rate']:.2f}",
+                f"{lines_kept['rate'] / column['rate']:.1f}",
+                f"{column['slices']:.1f}",
+                f"{lines_kept['slices']:.1f}",
+                column["block_rams"],
+                lines_kept["block_rams"],
+                *(most(found, window, fetch) for fetch in FETCHES),
+            ]
+        )
+    return study.markdown(
+        [
+            "window",
+            "column, frames/s",
+            "line buffer",
+            "times",
+            "column, % of the slices",
+            "line buffer",
+            "column, block RAMs",
+            "line buffer",
+            "column, most D of the sweep that fits",
+            "line buffer",
+        ],
+        lines,
+    )
 
 
 def most(found, window, fetch):
-    fits = [point["disparities"] for point in found
-            if point["window"] == window and point["fetch"] == fetch and point["fits"]]
+    fits = [
+        point["disparities"]
+        for point in found
+        if point["window"] == window and point["fetch"] == fetch and point["fits"]
+    ]
     return max(fits, default="none")
 
 
@@ -53,15 +63,20 @@ def computer_table(found):
     for rate in sorted({point["rate_hz"] for point in found}):
         for fetch in FETCHES:
             point = study.only(found, rate_hz=rate, fetch=fetch, window=7)
-            lines.append([f"{rate:g} Hz",
-    fetch,
-    f"{point['core']:.2f}",
-    f"{point['steady']:.2f}",
-    point["limited_by"],
-    f"{point['p50_ms']:.1f}",
-     f"{100 * point['pci_busy']:.0f}"])
-    return study.markdown(["cameras", "fetch", "core", "steady", "limited by",
-                          "capture to host, p50, ms", "PCI busy, %"], lines)
+            lines.append(
+                [
+                    f"{rate:g} Hz",
+                    fetch,
+                    f"{point['core']:.2f}",
+                    f"{point['steady']:.2f}",
+                    point["limited_by"],
+                    f"{point['p50_ms']:.1f}",
+                    f"{100 * point['pci_busy']:.0f}",
+                ]
+            )
+    return study.markdown(
+        ["cameras", "fetch", "core", "steady", "limited by", "capture to host, p50, ms", "PCI busy, %"], lines
+    )
 
 
 TEXT = """# Column fetch against line buffers
@@ -110,32 +125,44 @@ through the tables.
 
 
 def main():
-    core = study.points(sys.argv[1], hash="hash", window="matcher.window", disparities="matcher.disparities",
-                        fetch="matcher.fetch", rate="frames_per_second.core", slices="area.slices_percent",
-                        block_rams="area.block_rams")
+    core = study.points(
+        sys.argv[1],
+        hash="hash",
+        window="matcher.window",
+        disparities="matcher.disparities",
+        fetch="matcher.fetch",
+        rate="frames_per_second.core",
+        slices="area.slices_percent",
+        block_rams="area.block_rams",
+    )
     fitting = study.fitting(sys.argv[1])
     for point in core:
         point["fits"] = point["hash"] in fitting
     computer = study.points(
-    sys.argv[2],
-    fetch="matcher.fetch",
-    window="matcher.window",
-    rate_hz="cameras.frame_rate_hz",
-    core="frames_per_second.core",
-    steady="frames_per_second.steady",
-    bound="bound.system",
-    limited_by="bound.system_limited_by",
-    p50_ms="latency_ms.capture_to_host.p50",
-    dropped_pixels="cameras.left.dropped_pixels",
-    frames="frames",
-    busy="pci.busy_clocks",
-     clocks="pci.clocks")
+        sys.argv[2],
+        fetch="matcher.fetch",
+        window="matcher.window",
+        rate_hz="cameras.frame_rate_hz",
+        core="frames_per_second.core",
+        steady="frames_per_second.steady",
+        bound="bound.system",
+        limited_by="bound.system_limited_by",
+        p50_ms="latency_ms.capture_to_host.p50",
+        dropped_pixels="cameras.left.dropped_pixels",
+        frames="frames",
+        busy="pci.busy_clocks",
+        clocks="pci.clocks",
+    )
     for point in computer:
         point["pci_busy"] = round(point.pop("busy") / point.pop("clocks"), 4)
     computer.sort(key=lambda point: (point["window"], point["rate_hz"], point["fetch"]))
     study.write_csv(HERE / "computer.csv", computer)
-    text = TEXT.format(disparities=DISPARITIES, core=core_table(core), computer=computer_table(computer),
-                       frames=computer[0]["frames"])
+    text = TEXT.format(
+        disparities=DISPARITIES,
+        core=core_table(core),
+        computer=computer_table(computer),
+        frames=computer[0]["frames"],
+    )
     (HERE / "README.md").write_text(text)
 
 

@@ -12,8 +12,12 @@ import study  # noqa: E402
 
 WINDOW, PAPER, FEW = 7, 80, 14
 FETCHES = {"column": "column fetch", "line_buffer": "line buffers"}
-DRAWN = {("column", 80): ("o-", study.BLUE), ("line_buffer", 80): ("o-", study.VERMILION),
-         ("column", 200): ("s--", study.SKY), ("line_buffer", 200): ("s--", study.ORANGE)}
+DRAWN = {
+    ("column", 80): ("o-", study.BLUE),
+    ("line_buffer", 80): ("o-", study.VERMILION),
+    ("column", 200): ("s--", study.SKY),
+    ("line_buffer", 200): ("s--", study.ORANGE),
+}
 TABLES = {"": "identity", "_rig": "real rig"}
 BANKS = ("one bank", "two banks", "eight banks")
 WINDOWS = {7: study.BLUE, 15: study.ORANGE, 31: study.GREEN}
@@ -22,40 +26,47 @@ WINDOWS = {7: study.BLUE, 15: study.ORANGE, 31: study.GREEN}
 def read(folder):
     columns = {"units": "matcher.units", "core": "frames_per_second.core", "slices": "area.slices_percent"}
     folds = {
-    **columns,
-    "window": "matcher.window",
-    "disparities": "matcher.disparities",
-    "fetch": "matcher.fetch",
-     "block_rams": "area.block_rams"}
-    together = {**columns, "window": "matcher.window", "fetch": "matcher.fetch", "rows": "matcher.rows",
-                "block_rams": "area.block_rams"}
+        **columns,
+        "window": "matcher.window",
+        "disparities": "matcher.disparities",
+        "fetch": "matcher.fetch",
+        "block_rams": "area.block_rams",
+    }
+    together = {
+        **columns,
+        "window": "matcher.window",
+        "fetch": "matcher.fetch",
+        "rows": "matcher.rows",
+        "block_rams": "area.block_rams",
+    }
     banks = {**columns, "name": "name", "limited_by": "bound.core_limited_by"}
     cameras = {
-    **columns,
-    "name": "name",
-    "steady": "frames_per_second.steady",
-    "limited_by": "bound.system_limited_by",
-     "dropped_pixels": "cameras.left.dropped_pixels"}
+        **columns,
+        "name": "name",
+        "steady": "frames_per_second.steady",
+        "limited_by": "bound.system_limited_by",
+        "dropped_pixels": "cameras.left.dropped_pixels",
+    }
 
     def both(name, wanted):
-        return [{"tables": tables, **point} for which, tables in TABLES.items()
-                for point in study.points(folder / f"{name}{which}.db", **wanted)]
+        return [
+            {"tables": tables, **point}
+            for which, tables in TABLES.items()
+            for point in study.points(folder / f"{name}{which}.db", **wanted)
+        ]
 
     found = {
-    "folds": study.points(
-        folder / "folds.db",
-        **folds),
-        "together": study.points(
-            folder / "together.db",
-            **together),
-            "banks": both(
-                "banks",
-                banks),
-                "cameras": both(
-                    "cameras",
-                     cameras)}
-    order = {"folds": ("window", "disparities", "fetch", "core"), "together": ("window", "slices", "core"),
-             "banks": ("name", "tables", "core"), "cameras": ("name", "tables", "core")}
+        "folds": study.points(folder / "folds.db", **folds),
+        "together": study.points(folder / "together.db", **together),
+        "banks": both("banks", banks),
+        "cameras": both("cameras", cameras),
+    }
+    order = {
+        "folds": ("window", "disparities", "fetch", "core"),
+        "together": ("window", "slices", "core"),
+        "banks": ("name", "tables", "core"),
+        "cameras": ("name", "tables", "core"),
+    }
     for name, points in found.items():
         for point in points:
             point["units"] = int(point["units"])
@@ -67,19 +78,33 @@ def read(folder):
 
 
 def folds_table(found, disparities):
-    here = [point for point in found["folds"] if point["window"]
-        == WINDOW and point["disparities"] == disparities]
+    here = [
+        point for point in found["folds"] if point["window"] == WINDOW and point["disparities"] == disparities
+    ]
     lines = []
     for units in sorted({point["units"] for point in here}, reverse=True):
         column, kept = (study.only(here, units=units, fetch=fetch) for fetch in FETCHES)
-        lines.append([column["passes"],
-    units,
-    f"{column['core']:.2f}",
-    f"{column['slices']:.1f}",
-    f"{kept['core']:.2f}",
-     f"{kept['slices']:.1f}"])
-    return study.markdown(["passes", "modules", "column, frames/s", "% of the slices",
-                          "line buffers, frames/s", "% of the slices"], lines)
+        lines.append(
+            [
+                column["passes"],
+                units,
+                f"{column['core']:.2f}",
+                f"{column['slices']:.1f}",
+                f"{kept['core']:.2f}",
+                f"{kept['slices']:.1f}",
+            ]
+        )
+    return study.markdown(
+        [
+            "passes",
+            "modules",
+            "column, frames/s",
+            "% of the slices",
+            "line buffers, frames/s",
+            "% of the slices",
+        ],
+        lines,
+    )
 
 
 def front(points):
@@ -97,14 +122,26 @@ def together_table(found):
         for rate in (10, 18, 29.97, 60):
             cells = []
             for fetch in FETCHES:
-                here = [point for point in found["together"] if point["window"] ==
-                    window and point["fetch"] == fetch and point["core"] >= rate]
+                here = [
+                    point
+                    for point in found["together"]
+                    if point["window"] == window and point["fetch"] == fetch and point["core"] >= rate
+                ]
                 best = min(here, key=lambda point: point["slices"], default=None)
                 rows = f", {best['rows']} row{'s' * (best['rows'] > 1)}" if best and fetch == "column" else ""
                 cells += [f"{best['units']} modules{rows}", f"{best['slices']:.1f}"] if best else ["none", ""]
             lines.append([f"{window}x{window}", f"{rate:g}", *cells])
-    return study.markdown(["window", "frames/s at least", "smallest with column fetch", "% of the slices",
-                           "smallest with line buffers", "% of the slices"], lines)
+    return study.markdown(
+        [
+            "window",
+            "frames/s at least",
+            "smallest with column fetch",
+            "% of the slices",
+            "smallest with line buffers",
+            "% of the slices",
+        ],
+        lines,
+    )
 
 
 def banks_table(found):
@@ -120,61 +157,73 @@ def banks_table(found):
                 cells.append(f"{alone['core']:.2f}, {point['steady']:.2f}")
         point = study.only(found["banks"], name="one bank", tables="identity", units=units)
         lines.append([point["passes"], units, f"{point['slices']:.1f}", *cells])
-    return study.markdown(["passes", "modules", "% of the slices",
-                           *(f"{name}, {tables}" for name in BANKS for tables in TABLES.values())], lines)
+    return study.markdown(
+        [
+            "passes",
+            "modules",
+            "% of the slices",
+            *(f"{name}, {tables}" for name in BANKS for tables in TABLES.values()),
+        ],
+        lines,
+    )
 
 
 def draw(found):
     figure, (left, right) = study.panels(2, height=4.4, width=5.2)
     for (fetch, disparities), (look, color) in DRAWN.items():
-        points = sorted((point for point in found["folds"]
-                         if point["window"] == WINDOW and point["fetch"] == fetch
-                         and point["disparities"] == disparities), key=lambda point: point["slices"])
-        left.plot([point["slices"] for point in points], [point["core"] for point in points],
-                  look, color=color, markersize=4, label=f"{FETCHES[fetch]}, D = {disparities}")
+        points = sorted(
+            (
+                point
+                for point in found["folds"]
+                if point["window"] == WINDOW
+                and point["fetch"] == fetch
+                and point["disparities"] == disparities
+            ),
+            key=lambda point: point["slices"],
+        )
+        left.plot(
+            [point["slices"] for point in points],
+            [point["core"] for point in points],
+            look,
+            color=color,
+            markersize=4,
+            label=f"{FETCHES[fetch]}, D = {disparities}",
+        )
     left.set(title=f"fewer modules, {WINDOW}x{WINDOW}")
     here = [point for point in found["together"] if point["window"] == WINDOW]
     for fetch, color in (("column", study.BLUE), ("line_buffer", study.VERMILION)):
         points = [point for point in here if point["fetch"] == fetch]
-        right.plot([point["slices"] for point in points],
-    [point["core"] for point in points],
-    "o",
-    color=color,
-    markersize=3,
-     label=f"{FETCHES[fetch]}{', 1 to 8 rows' if fetch == 'column' else ''}")
+        right.plot(
+            [point["slices"] for point in points],
+            [point["core"] for point in points],
+            "o",
+            color=color,
+            markersize=3,
+            label=f"{FETCHES[fetch]}{', 1 to 8 rows' if fetch == 'column' else ''}",
+        )
         best = front(points)
-        right.plot([point["slices"] for point in best], [point["core"]
-                   for point in best], "-", color=color, linewidth=1)
+        right.plot(
+            [point["slices"] for point in best],
+            [point["core"] for point in best],
+            "-",
+            color=color,
+            linewidth=1,
+        )
     paper = study.only(here, fetch="column", rows=1, units=PAPER)
     right.plot([paper["slices"]], [paper["core"]], "k*", markersize=11, label="the paper's board")
     right.set(title=f"rows and fewer modules together, D = {PAPER}")
     for axis in (left, right):
         axis.axvline(100, color=study.GRAY, linestyle=":")
         axis.set(
-    xlabel="area, % of the slices",
-    ylabel="core, frames/s",
-    xscale="log",
-    yscale="log",
-    xlim=(
-        3,
-        200),
-        ylim=(
-            0.8,
-            200),
-            xticks=(
-                5,
-                10,
-                20,
-                50,
-                100),
-                yticks=(
-                    1,
-                    2,
-                    5,
-                    10,
-                    20,
-                    50,
-                     100))
+            xlabel="area, % of the slices",
+            ylabel="core, frames/s",
+            xscale="log",
+            yscale="log",
+            xlim=(3, 200),
+            ylim=(0.8, 200),
+            xticks=(5, 10, 20, 50, 100),
+            yticks=(1, 2, 5, 10, 20, 50, 100),
+        )
         axis.set_xticks([], minor=True)
         axis.set_yticks([], minor=True)
         axis.set(xticklabels=(5, 10, 20, 50, 100), yticklabels=(1, 2, 5, 10, 20, 50, 100))
@@ -257,44 +306,33 @@ def main():
     all80, half80 = (fold(disparities=80, fetch="column", units=units) for units in (80, 40))
     all200, half200 = (fold(disparities=200, fetch="column", units=units) for units in (200, 100))
     fast = fold(disparities=80, fetch="line_buffer", units=FEW)
-    one_bank = {tables: study.only(found["cameras"], name="one bank", tables=tables, units=FEW)["steady"]
-                for tables in TABLES.values()}
+    one_bank = {
+        tables: study.only(found["cameras"], name="one bank", tables=tables, units=FEW)["steady"]
+        for tables in TABLES.values()
+    }
     kept200 = fold(disparities=200, fetch="line_buffer", units=100)
     text = TEXT.format(
-    folds80=folds_table(
-        found,
-        80),
-        folds200=folds_table(
-            found,
-            200),
-            together=together_table(found),
-            banks=banks_table(found),
-            half80=100 *
-            half80["slices"] /
-            all80["slices"],
-            half200=100 *
-            half200["slices"] /
-            all200["slices"],
-            kept200=kept200["core"],
-            slices200=kept200["slices"],
-            all200=fold(
-                disparities=200,
-                fetch="line_buffer",
-                units=200)["slices"],
-                column200=all200["core"],
-                column_slices200=all200["slices"],
-                fast_slices=fast["slices"],
-                fast_units=fast["units"],
-                fast_rate=fast["core"],
-                one_bank=one_bank["identity"],
-                one_bank_rig=one_bank["real rig"],
-                more_units=16,
-                all_slices=fold(
-                    disparities=80,
-                    fetch="line_buffer",
-                    units=20)["slices"],
-                    paper_slices=all80["slices"],
-                     block_rams=fast["block_rams"])
+        folds80=folds_table(found, 80),
+        folds200=folds_table(found, 200),
+        together=together_table(found),
+        banks=banks_table(found),
+        half80=100 * half80["slices"] / all80["slices"],
+        half200=100 * half200["slices"] / all200["slices"],
+        kept200=kept200["core"],
+        slices200=kept200["slices"],
+        all200=fold(disparities=200, fetch="line_buffer", units=200)["slices"],
+        column200=all200["core"],
+        column_slices200=all200["slices"],
+        fast_slices=fast["slices"],
+        fast_units=fast["units"],
+        fast_rate=fast["core"],
+        one_bank=one_bank["identity"],
+        one_bank_rig=one_bank["real rig"],
+        more_units=16,
+        all_slices=fold(disparities=80, fetch="line_buffer", units=20)["slices"],
+        paper_slices=all80["slices"],
+        block_rams=fast["block_rams"],
+    )
     (HERE / "README.md").write_text(study.page(text))
 
 

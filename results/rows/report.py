@@ -25,31 +25,47 @@ def line(points):
 
 def read(folder):
     columns = {"rows": "matcher.rows", "fetch": "matcher.fetch", "core": "frames_per_second.core"}
-    core = {**columns, "window": "matcher.window", "slices": "area.slices_percent",
-        "block_rams": "area.block_rams", "limited_by": "bound.core_limited_by"}
+    core = {
+        **columns,
+        "window": "matcher.window",
+        "slices": "area.slices_percent",
+        "block_rams": "area.block_rams",
+        "limited_by": "bound.core_limited_by",
+    }
     two = {
-    **columns,
-    "bound": "bound.core",
-    "limited_by": "bound.core_limited_by",
-    "slices": "area.slices_percent",
-    "left_stalls": "ports.left_pixel.stall_cycles",
-     "right_stalls": "ports.right_pixel.stall_cycles"}
+        **columns,
+        "bound": "bound.core",
+        "limited_by": "bound.core_limited_by",
+        "slices": "area.slices_percent",
+        "left_stalls": "ports.left_pixel.stall_cycles",
+        "right_stalls": "ports.right_pixel.stall_cycles",
+    }
     cameras = {
-    **columns,
-    "name": "name",
-    "rate_hz": "cameras.frame_rate_hz",
-    "steady": "frames_per_second.steady",
-    "dropped_pixels": "cameras.left.dropped_pixels",
-     "limited_by": "bound.system_limited_by"}
+        **columns,
+        "name": "name",
+        "rate_hz": "cameras.frame_rate_hz",
+        "steady": "frames_per_second.steady",
+        "dropped_pixels": "cameras.left.dropped_pixels",
+        "limited_by": "bound.system_limited_by",
+    }
 
     def both(name, wanted):
-        return [{"tables": tables, **point} for which, tables in TABLES.items()
-                for point in study.points(folder / f"{name}{which}.db", **wanted)]
+        return [
+            {"tables": tables, **point}
+            for which, tables in TABLES.items()
+            for point in study.points(folder / f"{name}{which}.db", **wanted)
+        ]
 
-    found = {"core": study.points(folder / "core.db", **core), "two_banks": both("two_banks", two),
-             "cameras": both("cameras", cameras)}
-    order = {"core": ("window", "fetch", "rows"), "two_banks": ("tables", "fetch", "rows"),
-             "cameras": ("name", "tables", "rate_hz", "fetch", "rows")}
+    found = {
+        "core": study.points(folder / "core.db", **core),
+        "two_banks": both("two_banks", two),
+        "cameras": both("cameras", cameras),
+    }
+    order = {
+        "core": ("window", "fetch", "rows"),
+        "two_banks": ("tables", "fetch", "rows"),
+        "cameras": ("name", "tables", "rate_hz", "fetch", "rows"),
+    }
     for name, points in found.items():
         points.sort(key=lambda point: [point[key] for key in order[name]])
         study.write_csv(HERE / f"{name}.csv", points)
@@ -59,39 +75,53 @@ def read(folder):
 def rows_table(found):
     lines = []
     points = line(point for point in found["core"] if point["window"] == WINDOW)
-    two = {tables: line(point for point in found["two_banks"]
-                        if point["tables"] == tables) for tables in TABLES.values()}
+    two = {
+        tables: line(point for point in found["two_banks"] if point["tables"] == tables)
+        for tables in TABLES.values()
+    }
     for number, point in enumerate(points):
         rows = point["rows"]
         more = point["core"] - points[number - 1]["core"] if number else None
-        lines.append([rows,
-    f"{(WINDOW + rows - 1) / rows:.2f}",
-    f"{point['core']:.2f}",
-    "" if more is None else f"{more:+.2f}",
-    *(f"{two[tables][number]['core']:.2f}" for tables in TABLES.values()),
-    f"{point['slices']:.1f}",
-    point["block_rams"],
-     f"{point['core'] / point['slices']:.2f}"])
+        lines.append(
+            [
+                rows,
+                f"{(WINDOW + rows - 1) / rows:.2f}",
+                f"{point['core']:.2f}",
+                "" if more is None else f"{more:+.2f}",
+                *(f"{two[tables][number]['core']:.2f}" for tables in TABLES.values()),
+                f"{point['slices']:.1f}",
+                point["block_rams"],
+                f"{point['core'] / point['slices']:.2f}",
+            ]
+        )
     kept = study.only(found["core"], window=WINDOW, fetch="line_buffer")
     two = [study.only(found["two_banks"], tables=tables, fetch="line_buffer") for tables in TABLES.values()]
-    lines.append(["line buffers",
-    "1.00",
-    f"{kept['core']:.2f}",
-    "",
-    *(f"{point['core']:.2f}" for point in two),
-    f"{kept['slices']:.1f}",
-    kept["block_rams"],
-     f"{kept['core'] / kept['slices']:.2f}"])
-    return study.markdown(["rows",
-    "slots a result",
-    "frames/s",
-    "more",
-    "two banks, identity",
-    "two banks, real rig",
-    "% of the slices",
-    "block RAMs",
-    "frames/s for 1 % of the slices"],
-     lines)
+    lines.append(
+        [
+            "line buffers",
+            "1.00",
+            f"{kept['core']:.2f}",
+            "",
+            *(f"{point['core']:.2f}" for point in two),
+            f"{kept['slices']:.1f}",
+            kept["block_rams"],
+            f"{kept['core'] / kept['slices']:.2f}",
+        ]
+    )
+    return study.markdown(
+        [
+            "rows",
+            "slots a result",
+            "frames/s",
+            "more",
+            "two banks, identity",
+            "two banks, real rig",
+            "% of the slices",
+            "block RAMs",
+            "frames/s for 1 % of the slices",
+        ],
+        lines,
+    )
 
 
 def takeover_table(found):
@@ -100,31 +130,39 @@ def takeover_table(found):
         points = line(point for point in found["core"] if point["window"] == window)
         kept = study.only(found["core"], window=window, fetch="line_buffer")
         below = max(
-    (point for point in points if point["slices"] <= kept["slices"]),
-     key=lambda point: point["rows"])
+            (point for point in points if point["slices"] <= kept["slices"]), key=lambda point: point["rows"]
+        )
         fits = max((point for point in points if point["slices"] <= 100), key=lambda point: point["rows"])
         best = max(points, key=lambda point: point["core"] / point["slices"])
-        lines.append([f"{window}x{window}",
-    f"{points[0]['core']:.2f}",
-    best["rows"],
-    f"{kept['core']:.2f}",
-    f"{kept['slices']:.1f}",
-    below["rows"],
-    f"{below['core']:.2f}",
-    fits["rows"],
-    f"{fits['core']:.2f}",
-     f"{fits['slices']:.1f}"])
-    return study.markdown(["window",
-    "one row, frames/s",
-    "rows with the most frames for an area",
-    "line buffers, frames/s",
-    "their slices, %",
-    "most rows that are no larger",
-    "frames/s",
-    "most rows that fit",
-    "frames/s",
-    "slices, %"],
-     lines)
+        lines.append(
+            [
+                f"{window}x{window}",
+                f"{points[0]['core']:.2f}",
+                best["rows"],
+                f"{kept['core']:.2f}",
+                f"{kept['slices']:.1f}",
+                below["rows"],
+                f"{below['core']:.2f}",
+                fits["rows"],
+                f"{fits['core']:.2f}",
+                f"{fits['slices']:.1f}",
+            ]
+        )
+    return study.markdown(
+        [
+            "window",
+            "one row, frames/s",
+            "rows with the most frames for an area",
+            "line buffers, frames/s",
+            "their slices, %",
+            "most rows that are no larger",
+            "frames/s",
+            "most rows that fit",
+            "frames/s",
+            "slices, %",
+        ],
+        lines,
+    )
 
 
 def cameras_table(found):
@@ -132,50 +170,74 @@ def cameras_table(found):
     for rate in (29.97, 60):
         for name in ("eight banks", "two banks"):
             for tables in TABLES.values():
-                points = [point for point in found["cameras"]
-                          if point["name"] == name and point["tables"] == tables and point["rate_hz"] == rate]
+                points = [
+                    point
+                    for point in found["cameras"]
+                    if point["name"] == name and point["tables"] == tables and point["rate_hz"] == rate
+                ]
                 if any(point["dropped_pixels"] for point in points):
                     raise SystemExit(f"{name}, {tables}: pixels are lost")
                 cells = [study.only(points, fetch="column", rows=rows) for rows in CAMERA_ROWS]
                 cells.append(study.only(points, fetch="line_buffer"))
                 lines.append([f"{rate:g} Hz", name, tables, *(f"{point['steady']:.2f}" for point in cells)])
-    return study.markdown(["cameras", "banks", "tables", *
-    (f"{rows}" for rows in CAMERA_ROWS), "line buffers"], lines)
+    return study.markdown(
+        ["cameras", "banks", "tables", *(f"{rows}" for rows in CAMERA_ROWS), "line buffers"], lines
+    )
 
 
 def draw(found):
     figure, (left, right) = study.panels(2, height=4.2, width=5)
     points = line(point for point in found["core"] if point["window"] == WINDOW)
-    left.plot([point["rows"] for point in points], [point["core"]
-              for point in points], "o-", color=study.BLUE, markersize=5, label="eight banks")
+    left.plot(
+        [point["rows"] for point in points],
+        [point["core"] for point in points],
+        "o-",
+        color=study.BLUE,
+        markersize=5,
+        label="eight banks",
+    )
     for tables, color in zip(TABLES.values(), (study.GREEN, study.VERMILION)):
         two = line(point for point in found["two_banks"] if point["tables"] == tables)
-        left.plot([point["rows"] for point in two], [point["core"]
-                  for point in two], "s--", color=color, markersize=4, label=f"two banks, {tables}")
+        left.plot(
+            [point["rows"] for point in two],
+            [point["core"] for point in two],
+            "s--",
+            color=color,
+            markersize=4,
+            label=f"two banks, {tables}",
+        )
     kept = study.only(found["core"], window=WINDOW, fetch="line_buffer")
     left.axhline(kept["core"], color=study.GRAY, linestyle=":", label="line buffers, eight banks")
     left.set(
-    xlabel="rows at once",
-    ylabel="core, frames/s",
-    title=f"the core alone, {WINDOW}x{WINDOW}",
-    ylim=(
-        0,
-        140),
-        xticks=range(
-            1,
-            17,
-             3))
+        xlabel="rows at once",
+        ylabel="core, frames/s",
+        title=f"the core alone, {WINDOW}x{WINDOW}",
+        ylim=(0, 140),
+        xticks=range(1, 17, 3),
+    )
     study.legend(left)
     for window, color in DRAWN.items():
-        points = line(point for point in found["core"] if point["window"]
-                      == window and point["rows"] <= DRAWN_ROWS)
+        points = line(
+            point for point in found["core"] if point["window"] == window and point["rows"] <= DRAWN_ROWS
+        )
         kept = study.only(found["core"], window=window, fetch="line_buffer")
-        right.plot([point["slices"] for point in points], [point["core"]
-                   for point in points], "o-", color=color, markersize=4, label=f"{window}x{window}")
+        right.plot(
+            [point["slices"] for point in points],
+            [point["core"] for point in points],
+            "o-",
+            color=color,
+            markersize=4,
+            label=f"{window}x{window}",
+        )
         right.plot([kept["slices"]], [kept["core"]], "*", color=color, markersize=12)
     right.axvline(100, color=study.GRAY, linestyle=":")
-    right.set(xlabel="area, % of the slices", ylabel="core, frames/s", xlim=(0, 190), ylim=(0, 140),
-              title=f"one to {DRAWN_ROWS} rows; star: line buffers")
+    right.set(
+        xlabel="area, % of the slices",
+        ylabel="core, frames/s",
+        xlim=(0, 190),
+        ylim=(0, 140),
+        title=f"one to {DRAWN_ROWS} rows; star: line buffers",
+    )
     study.legend(right, loc="center right")
     study.save(figure, HERE / "rows.png")
 
@@ -237,42 +299,45 @@ placed or routed.
 def main():
     found = read(pathlib.Path(sys.argv[1]))
     draw(found)
-    by_rows = {point["rows"]: point for point in found["core"]
-        if point["window"] == WINDOW and point["fetch"] == "column"}
+    by_rows = {
+        point["rows"]: point
+        for point in found["core"]
+        if point["window"] == WINDOW and point["fetch"] == "column"
+    }
     kept = study.only(found["core"], window=WINDOW, fetch="line_buffer")
-    two = {tables: {point["rows"]: point["core"] for point in line(
-        found["two_banks"]) if point["tables"] == tables} for tables in TABLES.values()}
+    two = {
+        tables: {
+            point["rows"]: point["core"] for point in line(found["two_banks"]) if point["tables"] == tables
+        }
+        for tables in TABLES.values()
+    }
     lost = [1 - two["real rig"][rows] / by_rows[rows]["core"] for rows in range(1, 9)]
-    needed = min(rows for rows in CAMERA_ROWS
-                 if all(point["steady"] > 29.96 for point in found["cameras"]
-                        if point["rate_hz"] == 29.97 and point["fetch"] == "column"
-                        and point["rows"] == rows))
+    needed = min(
+        rows
+        for rows in CAMERA_ROWS
+        if all(
+            point["steady"] > 29.96
+            for point in found["cameras"]
+            if point["rate_hz"] == 29.97 and point["fetch"] == "column" and point["rows"] == rows
+        )
+    )
     text = TEXT.format(
-    rows=rows_table(found),
-    takeover=takeover_table(found),
-    cameras=cameras_table(found),
-    one=by_rows[1]["core"],
-    two=by_rows[2]["core"],
-    four=by_rows[4]["core"],
-    eight=by_rows[8]["core"],
-    sixteen=by_rows[16]["core"],
-    fits=max(
-        rows for rows,
-        point in by_rows.items() if point["slices"] <= 100),
-        two_eight=100 *
-        two["identity"][8] /
-        by_rows[8]["core"],
-        rig_least=100 *
-        min(lost),
-        rig_most=100 *
-        max(lost),
-        each=(
-            by_rows[16]["slices"] -
-            by_rows[2]["slices"]) /
-            14,
-            faster=kept["core"] /
-            by_rows[3]["core"],
-             needed=needed)
+        rows=rows_table(found),
+        takeover=takeover_table(found),
+        cameras=cameras_table(found),
+        one=by_rows[1]["core"],
+        two=by_rows[2]["core"],
+        four=by_rows[4]["core"],
+        eight=by_rows[8]["core"],
+        sixteen=by_rows[16]["core"],
+        fits=max(rows for rows, point in by_rows.items() if point["slices"] <= 100),
+        two_eight=100 * two["identity"][8] / by_rows[8]["core"],
+        rig_least=100 * min(lost),
+        rig_most=100 * max(lost),
+        each=(by_rows[16]["slices"] - by_rows[2]["slices"]) / 14,
+        faster=kept["core"] / by_rows[3]["core"],
+        needed=needed,
+    )
     (HERE / "README.md").write_text(study.page(text))
 
 

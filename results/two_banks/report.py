@@ -1,7 +1,7 @@
 """usage: report.py FOLDER
 
 The folder holds rig_left.lut and rig_right.lut, and ports, banks and cameras.db, each also with the tables of
-the rig (ports_rig.db, ..). Reads these, and the texts that `allocate` has printed, beside this script. Writes
+the rig (ports_rig.db, ..). Reads these, and what `allocate --json` has printed beside this script. Writes
 banks.png, misses.png and README.md beside it.
 """
 import pathlib
@@ -240,11 +240,11 @@ computer are steady rates over 120 frames, cameras at 29.97 Hz, no pixel lost.
 
 {best}
 
-The core alone, both knobs, tables of the real rig (`core_both_rig.txt`):
+The core alone, both knobs, tables of the real rig (`core_both_rig.json`):
 
 {core_rig}
 
-The whole computer, both knobs, tables of the real rig (`computer_both_rig.txt`):
+The whole computer, both knobs, tables of the real rig (`computer_both_rig.json`):
 
 {computer_rig}
 
@@ -282,7 +282,7 @@ Eight banks are the paper's, without either knob:
 - Both knobs are needed. Each table is read in 99 % of all clocks and so needs a bank for itself: with joint
   tables alone it takes four banks, with the cache alone three.
 - **The real rig costs {rig_loss:.1f} % in two banks**: {rig_two:.2f} frames a second, {rig_two_rows:.2f} with
-  four rows at once. That no other placement in two banks is better is proved (`two_banks_rig.txt`). Three
+  four rows at once. That no other placement in two banks is better is proved (`two_banks_rig.json`). Three
   banks give {rig_three:.2f}, four the full rate.
 - It is not the number of words. The rig reads {rig_words:,} words a frame, the identity {identity_words:,}.
   On average a step of one column in the rectified picture is less than one column in the camera's, because
@@ -320,7 +320,7 @@ clocks; the contract has no such lane.
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    found = {name + which: study.searched(HERE / f"{name}{which}.txt")
+    found = {name + which: study.searched(HERE / f"{name}{which}.json")
                                           for name in SEARCHES for which in TABLES}
     runs = read_runs(folder)
     maps = {key: misses(table) for key, table in read_tables(folder).items()}
@@ -347,7 +347,7 @@ def main():
 
     names = [name + which for name in (*SEARCHES, "two_banks") for which in TABLES]
     text = TEXT.format(
-        files=",\n".join(f"[{name}.txt]({name}.txt)" for name in names),
+        files=",\n".join(f"[{name}.json]({name}.json)" for name in names),
         best=study.best_table([(f"{what}, {tables}", found[name + which]) for name, what in SEARCHES.items()
                                for which, tables in TABLES.items()], BANKS),
         core_rig=study.witness_table(found["core_both_rig"]), computer_rig=study.witness_table(computer),

@@ -58,8 +58,9 @@ constexpr double kMargin = 16;
 constexpr double kPadding = 7;  // in a block, above and below its text
 constexpr double kThinEdge = 1.5;
 constexpr double kWidestEdge = 12;
-constexpr double kShortEdge = 36;  // length of an edge between blocks that stand one above the other
-constexpr double kHalo = 2;        // on each side of an edge, where it crosses another
+constexpr double kShortEdge = 36;    // length of an edge between blocks that stand one above the other
+constexpr double kBetweenEdges = 1;  // of one port, side by side
+constexpr double kHalo = 1;          // on each side of an edge, where it crosses another
 
 constexpr double kBankWidth = 256;
 constexpr double kBankRight = kMargin + kBankWidth;
@@ -423,10 +424,8 @@ class Chart {
       if (run_ != nullptr) {
         edge.width = std::max(1.0, kWidestEdge * link.rate / most);
         edge.color = load_colour(link.rate, link.peak);
-        const bool is_around = link.from.compare(0, 5, "part-") == 0;
-        edge.title = fmt::format("{}: {} of {} MB/s ({} %)\n{}", ends, measured(link.rate), edge.label,
-                                 measured(100 * link.rate / link.peak),
-                                 is_around ? "mean since power-up" : "mean while the core works on a frame");
+        edge.title = fmt::format("{}: {} of {} MB/s ({} %)", ends, measured(link.rate), edge.label,
+                                 measured(100 * link.rate / link.peak));
         edge.label = link.rate == 0 ? "" : measured(link.rate);
       }
       edges_.push_back(std::move(edge));
@@ -490,7 +489,7 @@ class Chart {
         for (const auto& [edge, y] : bank.ends) {
           if (edges_[edge].link.from != "port-" + name) continue;
           port.edges.push_back(edge);
-          port.bundle += edges_[edge].width + 1;
+          port.bundle += edges_[edge].width + kBetweenEdges;
         }
       }
       if (port.edges.empty()) continue;
@@ -536,7 +535,7 @@ class Chart {
         end += edges_[edge].width / 2;
         edges_[edge].way = {
             {port.box.x, end}, {fpga_.x, end}, {kBankRight + kBendsFromBank, at_bank.y}, at_bank};
-        end += edges_[edge].width / 2 + 1;
+        end += edges_[edge].width / 2 + kBetweenEdges;
       }
       y = port.box.bottom() + kBetweenPorts;
     }
@@ -778,24 +777,17 @@ class Chart {
     return text_element(edge.label, kPlain, at.x, at.y, 100);
   }
 
-  // Edges of one port follow each other, and lie side by side: a halo must not cover its neighbours.
   std::string edge_elements() const {
     std::string text;
-    for (auto first = edges_.begin(); first != edges_.end();) {
-      const auto end = std::find_if(
-          first, edges_.end(), [&first](const Edge& edge) { return edge.link.from != first->link.from; });
-      for (auto edge = first; edge != end; ++edge)
-        text += line_element(edge->way, edge->width + 2 * kHalo, "page");
-      for (; first != end; ++first) {
-        const ChartLink& link = first->link;
-        text +=
-            fmt::format("<g id=\"{}\" class=\"edge\" data-from=\"{}\" data-to=\"{}\" data-peak=\"{}\"{}>\n",
-                        xml_text(link.id()), xml_text(link.from), xml_text(link.to), link.peak,
-                        run_ == nullptr ? "" : fmt::format(" data-mbps=\"{}\"", link.rate)) +
-            title_element(first->title) +
-            arrow_element(first->way, link.there, link.back, first->width, first->color) +
-            label_element(*first) + "</g>\n";
-      }
+    for (const Edge& edge : edges_) {
+      const ChartLink& link = edge.link;
+      const std::string rate = run_ == nullptr ? "" : fmt::format(" data-mbps=\"{}\"", link.rate);
+      text += line_element(edge.way, edge.width + 2 * kHalo, "page") +
+              fmt::format("<g id=\"{}\" class=\"edge\" data-from=\"{}\" data-to=\"{}\" data-peak=\"{}\"{}>\n",
+                          xml_text(link.id()), xml_text(link.from), xml_text(link.to), link.peak, rate) +
+              title_element(edge.title) +
+              arrow_element(edge.way, link.there, link.back, edge.width, edge.color) + label_element(edge) +
+              "</g>\n";
     }
     return text;
   }

@@ -129,6 +129,8 @@ class Points:
 
     def __init__(self, path):
         self.path = path
+        if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+            raise Unusable(f"{path}: must be a regular file")  # SQLite would wait for a pipe
         try:
             with open(path, "rb"):
                 pass

@@ -49,12 +49,9 @@ class Names(ProgramTest):
     def test_are_told_from_parts_in_drawings_and_traces(self):
         self.outputs("run", *SCENE, *PRELOADED, "--trace", "perfetto:run.perfetto", "--trace", "vcd:run.vcd",
                      "--trace-window", "frame=0,rows=3..4")
-        self.outputs("conflicts", *SCENE, *PRELOADED, "--format", "svg", "--out", "figures")
         self.outputs("diagram", "--out", "chart.svg")
         for name, texts in {"run.perfetto": ["for left_pixel on bank matcher", "bank pci use"],
                             "run.vcd": ["sbank_matcher ", "$scope module bank_local-bus "],
-                            "figures/causes.svg": ["left_lut on bank matcher"],
-                            "figures/bank_rows.svg": ["bank pci", "left_lut waits"],
                             "chart.svg": [f">bank {bank}</text>" for bank in NAMES[:6]]}.items():
             found = (self.folder / "odd" / name).read_bytes()
             for text in texts:
