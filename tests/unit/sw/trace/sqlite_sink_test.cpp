@@ -45,7 +45,7 @@ TEST_F(SqliteSinkTest, EachQueryOfTheGuideGivesRows) {
   write(test::make_trace(board_, 2));
   const Database database(path_, Database::Access::kRead);
   const std::vector<std::string> queries = queries_of_guide();
-  EXPECT_EQ(queries.size(), 6);
+  EXPECT_EQ(queries.size(), 5);
   for (const std::string& query : queries) {
     sqlite::Statement statement(database, query);
     EXPECT_TRUE(statement.step()) << query;
