@@ -36,9 +36,9 @@ constexpr const char* kPlotFooter =
     "  pareto       two columns of the database, and the points that no other point dominates;\n"
     "               beside the columns there are banks_used and units_used\n"
     "Points that differ in keys besides the x axis are on separate lines; more than can be distinguished\n"
-    "are drawn as an envelope. Of more than 16 points, stalls shows those that wait most. DIR must be empty\n"
-    "or hold only such files, which are replaced. The script that draws is share/stereotlm/plots/figures.py\n"
-    "where the program is installed, sw/report/plots/figures.py in its source: copy and change it.";
+    "are drawn as an envelope. Of more than 16 points, stalls shows those that wait most. DIR must be\n"
+    "empty or hold only such files, which are replaced. The script that draws is plots/figures.py in\n"
+    "share/stereotlm where the program is installed, in sw/report of its source: copy and change it.";
 
 // The options of `plot`. They are passed to the script, which checks them.
 struct PlotOptions : Options {

@@ -64,6 +64,7 @@ constexpr double kHalo = 1;          // on each side of an edge, where it crosse
 
 constexpr double kBankWidth = 256;
 constexpr double kBankRight = kMargin + kBankWidth;
+constexpr double kBankPadding = 9;  // at both sides
 constexpr double kBetweenBanks = 10;
 constexpr double kLabelHeight = kNote.size * kLetterHeight;
 constexpr double kLabelFromBank = 18;
@@ -367,6 +368,7 @@ class Chart {
     const double bottom = place_ports();
     for (const Bank& bank : banks_) draw_bank(bank);
     draw_core(bottom);
+    connect_parts();
     if (!view_.in_computer) draw_legend({fpga_.x, fpga_.bottom() + 12});
     const double height = std::max({legend_bottom_, fpga_.bottom(), banks_.back().box.bottom()}) + kMargin;
     const Box page{0, 0, fpga_.right() + kMargin, height};
@@ -501,12 +503,6 @@ class Chart {
     }
   }
 
-  const Port* port(const std::string& name) const {
-    const auto found =
-        std::find_if(ports_.begin(), ports_.end(), [&name](const Port& each) { return each.name == name; });
-    return found == ports_.end() ? nullptr : &*found;
-  }
-
   // As low as the ports, unless they need more room.
   void place_banks(double top) {
     double ports = -kBetweenPorts;
@@ -551,11 +547,22 @@ class Chart {
                frame_element(box, 4, limits ? "ink" : "line", limits ? 3 : 1);
   }
 
+  // A line of a bank: a text at each of its ends. The left one is cut to the room that the right one leaves.
+  void draw_bank_line(const Box& bank, double y, const std::string& left, const Style& style,
+                      const std::string& right) {
+    const double width = bank.width - 2 * kBankPadding;
+    blocks_ +=
+        text_element(left, style, bank.x + kBankPadding, y,
+                     width - text_width(right, kNote.size, kNote.bold) - 8) +
+        text_element(right, kNote, bank.right() - kBankPadding, y + style.size - kNote.size, width, "end");
+  }
+
   void draw_bank(const Bank& bank) {
     const auto index = static_cast<std::size_t>(&bank - banks_.data());
     const platform::BankConfig& config = board_.banks[index];
     const memory::BankTraits& traits = memory::traits_of(config.kind);
     const auto all_words = static_cast<std::uint64_t>(config.words);
+    const std::string name = platform::bank_text(bank.name);
     std::uint64_t used = 0;
     std::string held;
     for (const Held& buffer : bank.buffers) {
@@ -566,56 +573,44 @@ class Chart {
     std::string kind = traits.name;
     if (traits.has_turnaround) kind += fmt::format(", {} lost", config.turnaround_cycles);
     std::string rate = short_number(4 * traits.ports * board_.fpga.clock_mhz) + " MB/s";
-    const double left = bank.box.x + 9;
-    const double right = bank.box.right() - 9;
-    const double width = right - left;
-    double y = bank.box.y + kPadding;
-    std::string busy;
-    double busy_percent = 0;
-    if (run_ != nullptr) {
+    if (run_ != nullptr)
       rate = fmt::format("{} of {}", measured(run_->banks[index].megabytes_per_second), rate);
-      busy_percent = 100 * run_->banks[index].utilization;
-      busy = fmt::format("busy {} %", measured(busy_percent));
-    }
-    open_block("bank-" + bank.name,
-               fmt::format("{}: {}\n{}, {}{}{}", platform::bank_text(bank.name), rate, size, kind,
-                           busy.empty() ? "" : "\n" + busy + " of the cycles", held),
-               bank.box, busy.empty() ? "memory" : "free");
-    const std::string load = load_colour(busy_percent, 100);
-    if (!busy.empty()) blocks_ += rect_element(bank.box, 4, paint("fill", load) + " fill-opacity=\"0.2\"");
-    const double rate_width = text_width(rate, kNote.size, kNote.bold);
-    blocks_ += text_element(platform::bank_text(bank.name), kName, left, y, width - rate_width - 8) +
-               text_element(rate, kNote, right, y + 1.5, width, "end");
+    const Box inside{bank.box.x + kBankPadding, 0, bank.box.width - 2 * kBankPadding, 0};
+    double y = bank.box.y + kPadding;
+    open_block("bank-" + bank.name, fmt::format("{}: {}\n{}, {}{}", name, rate, size, kind, held), bank.box,
+               run_ == nullptr ? "memory" : "free");
+    const double busy = run_ == nullptr ? 0 : 100 * run_->banks[index].utilization;
+    const std::string load = load_colour(busy, 100);
+    if (run_ != nullptr) blocks_ += rect_element(bank.box, 4, paint("fill", load) + " fill-opacity=\"0.2\"");
+    draw_bank_line(bank.box, y, name, kName, rate);
     y += kNameStep;
-    if (!busy.empty()) {
-      const Box bar = {left + 90, y + 2.5, width - 90, 8};
-      blocks_ += text_element(busy, kNote, left, y, 90) + rect_element(bar, 2, paint("fill", "free")) +
-                 rect_element({bar.x, bar.y, bar.width * busy_percent / 100, 8}, 2, paint("fill", load)) +
+    if (run_ != nullptr) {
+      const Box bar = {inside.x + 90, y + 2.5, inside.width - 90, 8};
+      blocks_ += text_element(fmt::format("busy {} %", measured(busy)), kNote, inside.x, y, 90) +
+                 rect_element(bar, 2, paint("fill", "free")) +
+                 rect_element({bar.x, bar.y, bar.width * busy / 100, 8}, 2, paint("fill", load)) +
                  frame_element(bar, 2, "line", 0.75);
       y += kNoteStep;
     }
-    const double size_width = text_width(size, kNote.size, kNote.bold);
-    blocks_ += text_element(size, kNote, left, y, width) +
-               text_element(kind, kNote, right, y, width - size_width - 8, "end");
+    draw_bank_line(bank.box, y, size, kNote, kind);
     y += kNoteStep + 2;
-    const Box bar = {left, y, width, 6};
+    const Box bar = {inside.x, y, inside.width, 6};
     blocks_ += rect_element(bar, 2, paint("fill", "free"));
-    double x = left;
+    double x = bar.x;
     for (const Held& buffer : bank.buffers) {
-      const double share = static_cast<double>(buffer.words) / static_cast<double>(all_words);
-      const Box part{x, y, width * share, 6};
-      blocks_ += rect_element(part, 0, paint("fill", "used")) + frame_element(part, 0, "memory", 1) +
-                 text_element(buffer.label, kPlain, left, bank.box.y + buffer.y, width - 70) +
-                 text_element(grouped(buffer.words), kNote, right, bank.box.y + buffer.y, 66, "end");
-      x += part.width;
+      const Box part{x, y, bar.width * static_cast<double>(buffer.words) / static_cast<double>(all_words), 6};
+      blocks_ += rect_element(part, 0, paint("fill", "used")) + frame_element(part, 0, "memory", 1);
+      draw_bank_line(bank.box, bank.box.y + buffer.y, buffer.label, kPlain, grouped(buffer.words));
+      x = part.right();
     }
-    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, left, y + 8, width);
+    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, bar.x, y + 8, bar.width);
     blocks_ += frame_element(bar, 2, "line", 0.75) + "</g>\n";
   }
 
   // A block with its lines in its middle.
   void draw_block(const std::string& id, const Box& box, const std::string& fill = "logic") {
     const Lines& lines = lines_.at(id);
+    boxes_[id] = box;
     open_block(id, fmt::format("{}", fmt::join(lines, "\n")), box, fill);
     double y = box.middle_y() - height_of(id) / 2 + kPadding;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -643,26 +638,27 @@ class Chart {
     const double lane_x = fpga_.x + kFpgaPadding + kPortWidth + kBetweenStages;
     const double matcher_x = lane_x + kLaneWidth + kBetweenStages;
     const double check_x = matcher_x + kMatcherWidth + kBetweenStages;
-    Box matcher{matcher_x, port("left_pixel")->box.y, kMatcherWidth, 0};
+    Box matcher{matcher_x, boxes_.at("port-left_pixel").y, kMatcherWidth, 0};
     for (const std::string side : {"left", "right"}) {
-      const Box& pixels = port(side + "_pixel")->box;
+      const Box pixels = boxes_.at("port-" + side + "_pixel");
       const Box lane = draw_stage("stage-" + side + "_lane", lane_x, pixels.middle_y(), kLaneWidth);
       const double y = lane.middle_y();
       draw_flow(side + "_pixel-" + side + "_lane", {pixels.right(), y}, {lane.x, y});
       draw_flow(side + "_lane-matcher", {lane.right(), y}, {matcher_x, y});
       matcher.height = std::max(pixels.bottom() - matcher.y, height_of("stage-matcher"));
       // From the port of the side's table to its pixel port, which is the next one above or below.
-      const Port* const table = port(board_.fpga.joint_tables ? "left_lut" : side + "_lut");
-      if (table == nullptr) continue;
+      const std::string table = board_.fpga.joint_tables ? "left_lut" : side + "_lut";
+      if (boxes_.count("port-" + table) == 0) continue;
+      const Box& lut = boxes_.at("port-" + table);
       const double x = pixels.middle_x();
-      const bool is_above = table->box.y < pixels.y;
-      draw_flow(table->name + "-" + side + "_pixel", {x, is_above ? table->box.bottom() : table->box.y},
+      const bool is_above = lut.y < pixels.y;
+      draw_flow(table + "-" + side + "_pixel", {x, is_above ? lut.bottom() : lut.y},
                 {x, is_above ? pixels.y : pixels.bottom()});
     }
     draw_block("stage-matcher", matcher);
     const Box check = draw_stage("stage-lr_check", check_x, matcher.middle_y(), kCheckWidth);
     draw_flow("matcher-lr_check", {matcher.right(), check.middle_y()}, {check.x, check.middle_y()});
-    const Box& result = port("result")->box;
+    const Box result = boxes_.at("port-result");
     const Box queue = draw_stage("stage-result_queue", check_x, result.middle_y(), kCheckWidth);
     draw_flow("lr_check-result_queue", {check.middle_x(), check.bottom()}, {check.middle_x(), queue.y});
     draw_flow("result_queue-result", {queue.x, queue.middle_y()}, {result.right(), queue.middle_y()});
@@ -679,57 +675,49 @@ class Chart {
                             ports_bottom + 10 + kNoteStep, width);
   }
 
-  // An edge straight down, or up, between two blocks.
-  void connect(const std::string& id, double x, double from_y, double to_y) {
-    for (Edge& edge : edges_) {
-      if (edge.link.id() == id) edge.way = {{x, from_y}, {x, to_y}};
-    }
-  }
-
   // Draws what is around the board, above the FPGA. Returns where the FPGA begins.
   double draw_computer(double top) {
-    // The parts at the PCI bus, with their links. None has more lines than the capture boards.
-    std::vector<std::pair<std::string, std::string>> parts = {
-        {"part-left_capture", "edge-left_capture-pci"},
-        {"part-right_capture", "edge-right_capture-pci"},
-        {"part-cpu", "edge-cpu-pci"},
-        {"part-host_memory", "edge-pci-host_memory"}};
-    if (board_.pci.load) parts.emplace_back("part-load", "edge-load-pci");
+    // The parts at the PCI bus. None has more lines than the capture boards.
+    Lines parts = {"part-left_capture", "part-right_capture", "part-cpu", "part-host_memory"};
+    if (board_.pci.load) parts.emplace_back("part-load");
     const double left = fpga_.x;
     const auto count = static_cast<double>(parts.size());
     const double width = (kFpgaWidth - (count - 1) * kBetweenParts) / count;
     const double camera_height = height_of("part-left_camera");
     const double parts_y = top + camera_height + kShortEdge;
-    const double parts_height = height_of("part-left_capture");
-    const Box pci{left, parts_y + parts_height + kShortEdge, kFpgaWidth, kBusHeight};
-    double x = left;
-    for (const auto& [part, link] : parts) {
-      const Box box{x, parts_y, width, parts_height};
-      const bool from_bus = part == "part-host_memory";
-      draw_block(part, box, from_bus ? "memory" : "computer");
-      connect(link, box.middle_x(), from_bus ? pci.y : box.bottom(), from_bus ? box.bottom() : pci.y);
-      x = box.right() + kBetweenParts;
+    Box box{left, parts_y, width, height_of("part-left_capture")};
+    for (const std::string& part : parts) {
+      draw_block(part, box, part == "part-host_memory" ? "memory" : "computer");
+      box.x = box.right() + kBetweenParts;
     }
-    x = left;
-    for (const std::string side : {"left", "right"}) {
-      const Box box{x, top, width, camera_height};
-      draw_block("part-" + side + "_camera", box, "computer");
-      connect("edge-" + side + "_camera-" + side + "_capture", box.middle_x(), box.bottom(), parts_y);
-      x = box.right() + kBetweenParts;
+    const Box pci{left, box.bottom() + kShortEdge, kFpgaWidth, kBusHeight};
+    box = {left, top, width, camera_height};
+    for (const char* const part : {"part-left_camera", "part-right_camera"}) {
+      draw_block(part, box, "computer");
+      box.x = box.right() + kBetweenParts;
     }
     draw_block("part-pci", pci, "bus");
     const Box bridge{left, pci.bottom() + kShortEdge, kBridgeWidth, height_of("part-bridge")};
     draw_block("part-bridge", bridge, "computer");
-    connect("edge-pci-bridge", left + 56, pci.bottom(), bridge.y);
-    connect("edge-bridge-pci", left + 150, bridge.y, pci.bottom());
     const Box local{left, bridge.bottom() + kShortEdge, kBridgeWidth, height_of("part-local_bus")};
     draw_block("part-local_bus", local, "bus");
-    const double host_x = port("host")->box.middle_x();
-    const double end = local.bottom() + kShortEdge;
-    connect("edge-bridge-local_bus", host_x, bridge.bottom(), local.y);
-    connect("edge-local_bus-host", host_x, local.bottom(), end + kFpgaTitle);
     draw_legend({left + kBridgeWidth + 24, pci.bottom() + 14});
-    return end;
+    return local.bottom() + kShortEdge;
+  }
+
+  // The links around the board, straight down or up. Each leaves the narrower block in its middle; the two
+  // between PCI bus and bridge lie side by side.
+  void connect_parts() {
+    for (Edge& edge : edges_) {
+      if (!edge.way.empty()) continue;  // that of a bank
+      const Box& from = boxes_.at(edge.link.from);
+      const Box& to = boxes_.at(edge.link.to);
+      double x = (from.width < to.width ? from : to).middle_x();
+      if (edge.link.id() == "edge-pci-bridge") x -= kBridgeWidth / 5;
+      if (edge.link.id() == "edge-bridge-pci") x += kBridgeWidth / 5;
+      edge.way = from.y < to.y ? std::vector<Point>{{x, from.bottom()}, {x, to.y}}
+                               : std::vector<Point>{{x, from.y}, {x, to.bottom()}};
+    }
   }
 
   // Returns its bottom.
@@ -797,6 +785,7 @@ class Chart {
   const Statistics* run_;
   std::set<std::string> limiting_;
   std::map<std::string, Lines> lines_;  // of each block but the banks, by its id
+  std::map<std::string, Box> boxes_;    // of those that are drawn
   std::vector<Edge> edges_;             // in the order of chart_links()
   std::vector<Bank> banks_;             // in the order of the board
   std::vector<Port> ports_;             // from top to bottom

@@ -113,9 +113,7 @@ def order(value):
 
 
 def unknown(what, name, known):
-    """A message with the known names that are nearest, in full or from one of their dots on."""
-    ends = {each.split(".", dots)[-1]: each for each in known for dots in range(each.count("."), -1, -1)}
-    near = dict.fromkeys(ends[end] for end in difflib.get_close_matches(name, ends, 3, 0.5))
+    near = difflib.get_close_matches(name, known)
     return f"unknown {what} {name}" + (f"; nearest: {', '.join(near)}" if near else "")
 
 
@@ -150,9 +148,11 @@ class Points:
 
     def _read(self, database):
         def read(table):
-            cursor = database.execute(f"SELECT * FROM {table}")
-            return pandas.DataFrame(cursor.fetchall(), columns=[name for name, *_ in cursor.description],
-                                    dtype=object)
+            names = [name for _, name, *_ in database.execute(f"PRAGMA table_info({table})")
+                     if name != "config"]  # the board as YAML, which no figure needs
+            columns = ", ".join('"' + name.replace('"', '""') + '"' for name in names)
+            return pandas.DataFrame(database.execute(f"SELECT {columns} FROM {table}").fetchall(),
+                                    columns=names, dtype=object)
 
         def pragma(name):
             return database.execute(f"PRAGMA {name}").fetchone()[0]
