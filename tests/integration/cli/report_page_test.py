@@ -60,7 +60,7 @@ def core():
 
 @functools.cache
 def computer():
-    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6", "--record")
+    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6")
 
 
 def two_computers():
@@ -715,11 +715,11 @@ class Tools(PageTest):
         self.assertIn("allocation.left_lut", keys)
         self.assertLess(len(keys), 8)
 
-    def test_charts_that_quick_leaves_out_say_so(self):
+    def test_charts_that_are_left_out_say_why(self):
         without = lambda data: [data["run"].pop(key) for key in ("recording", "knobs")]
         self.opened(page_of(computer()), without)
-        for chart in ("rows", "time", "knobs"):
-            self.assertIn("--quick", self.browser.text(f"#{chart}"))
+        for chart, option in (("rows", "--no-record"), ("time", "--no-record"), ("knobs", "--quick")):
+            self.assertIn(option, self.browser.text(f"#{chart}"))
             self.assertEqual(self.browser.all(f"#{chart} svg"), [])
 
 
