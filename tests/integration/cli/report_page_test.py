@@ -649,6 +649,19 @@ class Tools(PageTest):
         self.assertAlmostEqual(self.browser.run(box, "#time .left-out") * 4,
                                self.browser.run(box, "#time .brush-x"), delta=8)
 
+    def test_a_part_of_a_run_has_the_work_and_the_waits_of_that_part(self):
+        title = lambda: self.browser.text("#time h2")
+        self.browser.open(page_of(computer()))
+        whole = title()
+
+        def change(data):
+            stats = data["run"]["stats"]
+            stats.update(frames=100 * stats["frames"], cycles=100 * stats["cycles"])
+
+        self.opened(page_of(computer()), change)
+        self.assertEqual(title(), whole)
+        self.assertIn("The first 6 of 600 frames are recorded.", self.browser.text("#time"))
+
     def test_sliders_move_the_picture_and_the_overlay(self):
         self.browser.open(page_of(computer()))
         self.browser.drawn()
