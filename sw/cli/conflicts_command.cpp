@@ -81,7 +81,7 @@ Subject load(const ConflictsOptions& options) {
     subject.input.fast = true;  // the figures do not depend on the fidelity
     process::catch_interrupts();
   }
-  subject.input.record = true;
+  subject.input.recorded_frames = runs::kAllFrames;
   return subject;
 }
 

@@ -21,9 +21,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kReportFooter =
     "INPUT is a folder that run --out has written, a database of sweep, or two such folders, which are\n"
-    "compared. The page is one file; a browser shows it without a network. Runs are run again for what\n"
-    "happens where in the picture, and when. For one run each single change of the board is also tried, as\n"
-    "explain does.";
+    "compared; these are run again. The page is one file; a browser shows it without a network. For one run\n"
+    "each single change of the board is also tried, as explain does.";
 
 struct ReportOptions : Options {
   using Options::Options;
@@ -46,9 +45,7 @@ struct ReportOptions : Options {
                          {required("a folder of run --out, two of them, or a database")}, Takes::kList);
   Option out =
       Option(this, "--out", "F.html", "The page to write", {required("the page to write"), ends_in(".html")});
-  Option quick =
-      Option(this, "--quick", "",
-             "Simulate nothing: no gain of the changes; rows and times only of a run with --record");
+  Option quick = Option(this, "--quick", "", "Simulate nothing: no gain of the changes");
 };
 
 // What `run` has printed, and what `explain` finds, for a page without JavaScript.
@@ -86,10 +83,14 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   problems.check();
   Json data = report::run_data(*run, input.tables);
   std::string text = text_of(*run);
-  if (options.quick.is_given()) {
-    process::attempt_or_refuse("", [&] { report::add_recorded_files(*run, data); });
-  } else {
-    if (!report::add_repetition(*run, input, data)) return std::nullopt;
+  bool is_recorded = false;
+  process::attempt_or_refuse("", [&] { is_recorded = report::add_recording(*run, input, data); });
+  if (!is_recorded) {
+    process::say("note", fmt::format("'{}': the run has recorded nothing: the page does not show where and "
+                                     "when ports wait: run it again, without --no-record",
+                                     run->folder));
+  }
+  if (!options.quick.is_given()) {
     runs::Explanation explanation(run->board, input.tables, input.camera);
     const bool calibrated = run->options.calibration.has_value();
     if (!explanation.simulate(calibrated ? runs::PointSimulator(input.tables) : runs::PointSimulator()))
@@ -109,17 +110,14 @@ std::optional<Json> data_of_two_runs(const ReportOptions& options, process::Prob
   const runs::RunInput input_b = runs::open_again(*b, problems);
   problems.check();
   const runs::DiffLimits limits(*a, *b);
-  report::ComparedRun of_a{*a, input_a.tables, {a->board, false}};
-  report::ComparedRun of_b{*b, input_b.tables, {b->board, false}};
-  const auto record = [](report::ComparedRun& run) -> runs::Rerun::Record {
-    return [&run](const std::string& name, const std::string& text) { run.waits.add(name, text); };
-  };
-  runs::FrameAlignment aligned(*a, *b, limits, nullptr, record(of_a), record(of_b));
+  runs::FrameAlignment aligned(*a, *b, limits, nullptr);
   if (!aligned.run()) return std::nullopt;
   for (const runs::RecordedRun& run : {std::cref(*a), std::cref(*b)})
     runs::say_lost_pixels(run.statistics, fmt::format("'{}': ", run.folder));
   Json data = {{"kind", "two_runs"}};
-  data.update(report::two_runs_data(of_a, of_b, aligned, limits));
+  process::attempt_or_refuse("", [&] {
+    data.update(report::two_runs_data({*a, input_a.tables}, {*b, input_b.tables}, aligned, limits));
+  });
   data["text"] = paragraph("", 0, data["difference"]["verdict"]) + '\n' +
                  report::settings_table("board", data["difference"]["settings"]) + "\nA: " + text_of(*a) +
                  "\nB: " + text_of(*b);

@@ -44,9 +44,7 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
   if (input.trace && input.trace->window())
     simulation->trace(input.trace->window()->cycles, *input.trace, *input.trace);
   const std::uint64_t frame_cycles = assumed_frame_cycles(input);
-  runs::Records records(input, [&input](const std::string& name, const std::string& text) {
-    input.folder->append(name, text);
-  });
+  runs::Records records(input);
   runs::ProgressLine progress(
       fmt::format("{} frames are simulated", input.frames),
       input.fast ? runs::stepped_text(input.board, input.tables, input.camera) : "--fidelity cycle");
@@ -84,7 +82,8 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
 
 // Whether the counts of the core alone are all that is wanted: count_cycles() has them without the modules.
 bool has_counts_only(const runs::RunInput& input, bool verifies) {
-  return !input.camera && input.fast && input.timing_only && !input.record && !input.trace && !verifies;
+  return !input.camera && input.fast && input.timing_only && input.recorded_frames == 0 && !input.trace &&
+         !verifies;
 }
 
 // The same figures as simulate(), of the core alone without pixels, in a third of the time.
@@ -124,7 +123,8 @@ void say_large_traces(runs::RunInput& input, const TraceOptions& options) {
     input.trace = std::make_unique<trace::Trace>(files, input.board, window);
     input.pairs = runs::blank_pairs(input.board);
     input.fast = input.timing_only = true;
-    input.record = input.described.save_frames = false;
+    input.recorded_frames = 0;
+    input.described.save_frames = false;
     input.frames = window ? frame + 1 : std::min(input.frames, kFrames);
     process::leave_out_notes(true);
     const Outcome outcome = simulate(input, nullptr);
@@ -201,10 +201,9 @@ int run(const RunCommandOptions& options) {
 }  // namespace
 
 void add_run(Commands& commands) {
-  add_command(
-      commands, "run", "Simulate a board on pairs of pictures", run,
-      "Ctrl-C ends the run with the results of the frames that are finished; with cameras, --record or\n"
-      "--trace those that the core has begun are finished first.");
+  add_command(commands, "run", "Simulate a board on pairs of pictures", run,
+              "Ctrl-C ends the run with the results of the frames that are finished; with cameras, --out or\n"
+              "--trace those that the core has begun are finished first.");
 }
 
 }  // namespace stereotlm::cli

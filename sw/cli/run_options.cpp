@@ -162,7 +162,7 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
   input.camera = options.source.is_camera();
   input.fast = options.fidelity.text() != "cycle";
   input.timing_only = options.timing_only.is_given();
-  input.record = options.record.is_given();
+  input.recorded_frames = options.recorded_frames();
   input.json = options.json.is_given();
   input.frames = options.frames.number<std::uint64_t>().value_or(has_end ? pairs : 1);
   runs::RecordedOptions& run = input.described;
@@ -174,7 +174,8 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
   run.frames = input.frames;
   run.truth_scale = options.truth.scale();
   run.save_frames = options.save_frames.is_given();
-  run.record = input.record;
+  run.record = options.record.is_given();
+  run.no_record = options.no_record.is_given();
   // Throws now, instead of after the run, if a path cannot be recorded.
   if (options.out.is_given()) run_json(run);
 }
@@ -351,6 +352,11 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
   if (!board.argument.is_given() || !has_pictures)
     problems.add_note(
         fmt::format("a complete command: stereotlm {} fpl2003 --left left.png --right right.png", command));
+}
+
+std::uint64_t RunOptions::recorded_frames() const {
+  if (!out.is_given() || no_record.is_given()) return 0;
+  return record.is_given() || !trace.traces().empty() ? runs::kAllFrames : runs::kRecordedFrames;
 }
 
 runs::RunInput RunOptions::load() const {

@@ -12,6 +12,7 @@
 #include "sw/process/client.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_input.h"
+#include "sw/runs/run_results.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/open_source.h"
@@ -154,6 +155,9 @@ struct RunOptions {
   // process, which has not changed anything yet. Afterwards interrupts are caught (catch_interrupts()).
   runs::RunInput load() const;
 
+  // The first frames whose waits are recorded; 0: none.
+  std::uint64_t recorded_frames() const;
+
   Options* of;
   Options* more;                  // of the options that do not say what is simulated
   std::string beside_board = "";  // what BOARD may be beside a board
@@ -193,9 +197,12 @@ struct RunOptions {
              process::client == nullptr ? std::vector<Rule>{goes_with(out, "DIR")} : std::vector<Rule>{});
   Option record = Option(
       more, "--record,--conflicts", "",
-      "Write where and when ports wait: rows.csv and conflicts.csv in the folder of --out; with cameras "
-      "also what happened when, and why it waited: timeline.csv and latency.csv",
+      "Record in the folder of --out where and when ports wait, and with cameras what happened when, in all "
+      "frames (default: in the first " +
+          std::to_string(runs::kRecordedFrames) + ")",
       {goes_with(out, "DIR")});
+  Option no_record = Option(more, "--no-record", "", "Record nothing: quicker for long runs without pixels",
+                            {goes_with(out, "DIR")});
   TraceOptions trace{more};
   JsonOption json{more};
 };

@@ -29,7 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using calib::Panel;
-using calib::ScaleTexts;
 using kernels::GrayImage;
 using Words = std::vector<std::string>;
 
@@ -51,34 +50,26 @@ void write_file(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
   file.commit();
 }
 
-// Levels 0 .. `levels` - 1 in colours, 255 in light grey.
-Panel coloured_panel(const std::string& caption, const GrayImage& image, int levels,
-                     const ScaleTexts& texts) {
+// Levels 0 .. `disparities` - 1 in colours, 255 in light grey.
+Panel disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
+                      const std::string& missing) {
   cv::Mat1f values(image.height, image.width);
   std::transform(image.pixels.begin(), image.pixels.end(), values.begin(), [](std::uint8_t level) {
     return level == kernels::kInvalidDisparity ? std::numeric_limits<float>::quiet_NaN()
                                                : static_cast<float>(level);
   });
-  return {caption, calib::with_scale(calib::in_colors(values, 0, levels - 1), texts)};
+  return {caption, calib::with_scale(calib::in_colors(values, 0, disparities - 1),
+                                     {"0", std::to_string(disparities - 1), missing})};
 }
 
-Panel disparity_panel(const std::string& caption, const GrayImage& image, int disparities,
-                      const std::string& missing) {
-  return coloured_panel(caption, image, disparities, {"0", std::to_string(disparities - 1), missing});
-}
-
-// Far depths have level 0.
 Panel depth_panel(const std::vector<std::uint16_t>& millimetres, int width, int height) {
-  constexpr int kLevels = 254;
-  GrayImage image(width, height, kernels::kInvalidDisparity);
   const auto [near, far] = calib::depth_range(millimetres).value();
-  for (std::size_t i = 0; i < millimetres.size(); ++i) {
-    if (millimetres[i] == 0) continue;
-    const int depth = std::clamp<int>(millimetres[i], near, far);
-    image.pixels[i] = static_cast<std::uint8_t>((kLevels - 1) * (far - depth) / (far - near));
-  }
-  return coloured_panel("depth", image, kLevels,
-                        {fmt::format("{} mm", far), fmt::format("{} mm", near), "no answer"});
+  cv::Mat1f values(height, width);
+  std::transform(millimetres.begin(), millimetres.end(), values.begin(), [](std::uint16_t depth) {
+    return depth == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(depth);
+  });
+  return {"depth", calib::with_scale(calib::in_colors(values, far, near),
+                                     {fmt::format("{} mm", far), fmt::format("{} mm", near), "no answer"})};
 }
 
 void write_panels(const fs::path& path, const std::vector<Panel>& panels) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "models/binder.h"
@@ -15,7 +17,6 @@
 #include "sw/media/load.h"
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
-#include "sw/runs/run_results.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/open_source.h"
 #include "sw/stats/accuracy.h"
@@ -52,7 +53,6 @@ std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
 
 constexpr char kFrame = 'f';
 constexpr char kFigures = 's';
-constexpr char kRecord = 'r';
 
 // The message in which the child sends a frame to the parent: kind, number, rows, pixels. Values are copied
 // as bytes, because both processes run the same program.
@@ -90,29 +90,23 @@ Rerun::Frame frame_of(const std::string& message, const RecordedRun& run) {
   return frame;
 }
 
-void run_again(const RecordedRun& run, bool record, const process::Child::Tell& tell) {
+void run_again(const RecordedRun& run, const process::Child::Tell& tell) {
   process::Problems problems;
   RunInput input = open_again(run, problems);
   if (!problems.empty()) throw std::runtime_error("cannot be run any more: " + problems.in_one_line());
   input.fast = true;
-  input.record = record;
   Binder binder;
   const auto simulation = make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
   simulation->core().record_rows();
-  Records records(input, [&tell](const std::string& name, const std::string& text) {
-    tell(kRecord + name + '\n' + text);
-  });
   std::deque<fpga::RowProfile> rows;  // rows of frames whose results are not delivered yet
   while (!simulation->finished()) {
     const std::vector<Result> results = simulation->advance();
     for (fpga::RowProfile& frame : simulation->core().take_rows()) rows.push_back(std::move(frame));
-    if (!results.empty()) records.add(*simulation);  // next() returns soon after
     for (const Result& result : results) {
       tell(message_of(result, rows.front()));
       rows.pop_front();
     }
   }
-  records.finish(*simulation);
   tell(kFigures + figures_of(simulation->statistics(), simulation->last(), input));
 }
 
@@ -237,21 +231,12 @@ void check_repeated(const RecordedRun& run, const std::string& stats_json) {
   throw std::runtime_error(text);
 }
 
-Rerun::Rerun(const RecordedRun& run, Record record)
-    : run_(run),
-      record_(std::move(record)),
-      child_([&run, records = record_ != nullptr](const process::Child::Tell& tell) {
-        run_again(run, records, tell);
-      }) {}
+Rerun::Rerun(const RecordedRun& run)
+    : run_(run), child_([&run](const process::Child::Tell& tell) { run_again(run, tell); }) {}
 
 std::optional<Rerun::Frame> Rerun::next() {
   try {
-    std::optional<std::string> message = child_.next();
-    while (message && message->front() == kRecord) {
-      const std::size_t end_of_name = message->find('\n');
-      record_(message->substr(1, end_of_name - 1), message->substr(end_of_name + 1));
-      message = child_.next();
-    }
+    const std::optional<std::string> message = child_.next();
     if (!message) throw std::runtime_error("has ended without figures");
     if (message->front() == kFrame) return frame_of(*message, run_);
     check_repeated(run_, message->substr(1));
@@ -274,12 +259,8 @@ DiffLimits::DiffLimits(const RecordedRun& a, const RecordedRun& b) {
 }
 
 FrameAlignment::FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits,
-                               stats::RowsCsv* csv, Rerun::Record record_a, Rerun::Record record_b)
-    : limits_(limits),
-      csv_(csv),
-      frames_(std::max(a.options.frames, b.options.frames)),
-      a_(a, std::move(record_a)),
-      b_(b, std::move(record_b)) {}
+                               stats::RowsCsv* csv)
+    : limits_(limits), csv_(csv), frames_(std::max(a.options.frames, b.options.frames)), a_(a), b_(b) {}
 
 bool FrameAlignment::run() {
   bool goes_on = read(a_) && read(b_);

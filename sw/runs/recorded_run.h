@@ -3,10 +3,8 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "models/fpga/record/row_recorder.h"
 #include "models/kernels/gray_image.h"
@@ -56,14 +54,12 @@ std::string figures_of(platform::Statistics statistics, const Result& last, cons
 // Throws std::runtime_error if these figures of the repetition differ from those of the run.
 void check_repeated(const RecordedRun& run, const std::string& figures);
 
-// Repeats a recorded run in a child process and records the rows of its frames, and what `run --record` does.
-// The repetition is always at fidelity fast, because the figures do not depend on the fidelity.
+// Repeats a recorded run in a child process, and takes the rows and the disparities of its frames. The
+// repetition is always at fidelity fast, because the figures do not depend on the fidelity.
 class Rerun {
  public:
-  // Takes text for the end of a file of `run --record`.
-  using Record = std::function<void(const std::string& name, const std::string& text)>;
-  // Starts the child. `run` outlives the object. With `record`, next() hands all files to it.
-  explicit Rerun(const RecordedRun& run, Record record = nullptr);
+  // Starts the child. `run` outlives the object.
+  explicit Rerun(const RecordedRun& run);
 
   // A finished frame of the repeated run.
   struct Frame {
@@ -80,7 +76,6 @@ class Rerun {
 
  private:
   const RecordedRun& run_;
-  Record record_;
   process::Child child_;
 };
 
@@ -97,9 +92,7 @@ struct DiffLimits {
 class FrameAlignment {
  public:
   // Starts both runs. All arguments outlive the object. `csv`: gets the compared rows; may be null.
-  // `record_a` and `record_b`: what Rerun hands to a record; may be null.
-  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv,
-                 Rerun::Record record_a = nullptr, Rerun::Record record_b = nullptr);
+  FrameAlignment(const RecordedRun& a, const RecordedRun& b, const DiffLimits& limits, stats::RowsCsv* csv);
 
   // Returns true when both runs have ended, false at the first interrupt. Throws as Rerun::next() does.
   bool run();
@@ -118,7 +111,7 @@ class FrameAlignment {
  private:
   // One of the two runs, and the frames of it that are still to be compared.
   struct AlignedRun {
-    AlignedRun(const RecordedRun& run, Rerun::Record record) : rerun(run, std::move(record)) {}
+    explicit AlignedRun(const RecordedRun& run) : rerun(run) {}
 
     Rerun rerun;
     std::optional<Rerun::Frame> ahead;  // next frame of the run; nullopt after the last

@@ -31,7 +31,7 @@ struct RunInput {
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
-  bool record = false;                          // --record
+  std::uint64_t recorded_frames = 0;            // whose waits are written to the folder; 0: none
   bool json = false;                            // --json
   std::unique_ptr<trace::Trace> trace;          // null: no --trace
   std::uint64_t frames = 1;                     // frames to deliver
@@ -41,7 +41,9 @@ struct RunInput {
   std::unique_ptr<files::OutputFolder> folder;  // null: no result files
 
   // The mode of the simulation.
-  RunMode mode() const { return {camera, fidelity(fast), frames, record || trace != nullptr}; }
+  RunMode mode() const {
+    return {camera, fidelity(fast), frames, trace != nullptr ? kAllFrames : recorded_frames};
+  }
   fpga::Fidelity fidelity(bool at_fast) const {
     if (at_fast) return timing_only ? fpga::Fidelity::kTiming : fpga::Fidelity::kFast;
     return timing_only ? fpga::Fidelity::kCycleTiming : fpga::Fidelity::kCycle;

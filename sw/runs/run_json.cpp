@@ -139,6 +139,7 @@ void each_key(Document& document, Options& options) {
   document.given("truth_scale", options.truth_scale, options.truth.has_value());
   document.given("save_frames", options.save_frames);
   document.given("record", options.record);
+  document.given("no_record", options.no_record);
 }
 
 // Throws std::runtime_error for options that run_json() would write but no run can have.

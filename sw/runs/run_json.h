@@ -49,6 +49,7 @@ struct RecordedOptions : InputPictures {
   double truth_scale = 1;  // only with a truth
   bool save_frames = false;
   bool record = false;
+  bool no_record = false;
 };
 
 // The text of run.json. Keys are the names of the options; an option that was not given is absent. Throws

@@ -136,30 +136,38 @@ void save_frame(const RunInput& input, const Result& result) {
   if (process::client != nullptr) send(name, result.disparity);
 }
 
-Records::Records(const RunInput& input, Append append) : input_(input), append_(std::move(append)) {
-  if (!input_.record) return;
-  append_("rows.csv", stats::rows_csv_head(input.board));
+Records::Records(const RunInput& input) : input_(input) {
+  if (input_.recorded_frames == 0) return;
+  input_.folder->append("rows.csv", stats::rows_csv_head(input.board));
   if (!input.camera) return;
-  append_("timeline.csv", stats::timeline_csv_head());
-  append_("latency.csv", stats::latency_csv_head());
+  input_.folder->append("timeline.csv", stats::timeline_csv_head());
+  input_.folder->append("latency.csv", stats::latency_csv_head());
 }
 
 void Records::add(Simulation& simulation) {
   for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
     if (input_.trace) input_.trace->frame(platform::frame_runs(frame));
-    if (input_.record) append_("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
+    if (input_.recorded_frames > 0)
+      input_.folder->append("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
   }
   if (!input_.camera) return;
-  const platform::TimelineRecords records = simulation.take_timeline();
+  platform::TimelineRecords records = simulation.take_timeline();
   if (input_.trace) input_.trace->events(records);
-  if (!input_.record) return;
-  append_("timeline.csv", stats::timeline_csv(records.events));
-  append_("latency.csv", stats::latency_csv(records.latencies));
+  if (input_.recorded_frames == 0) return;
+  for (const platform::FrameLatency& frame : records.latencies) {
+    if (frame.frame + 1 == input_.recorded_frames) end_ps_ = frame.begin_ps + frame.sum_ps();
+  }
+  const auto is_later = [this](const platform::TimelineEvent& event) { return event.end_ps > end_ps_; };
+  records.events.erase(std::find_if(records.events.begin(), records.events.end(), is_later),
+                       records.events.end());
+  input_.folder->append("timeline.csv", stats::timeline_csv(records.events));
+  input_.folder->append("latency.csv", stats::latency_csv(records.latencies));
 }
 
 void Records::finish(Simulation& simulation) {
   add(simulation);
-  if (input_.record) append_("conflicts.csv", stats::conflicts_csv(input_.board, *simulation.conflicts()));
+  if (input_.recorded_frames > 0)
+    input_.folder->append("conflicts.csv", stats::conflicts_csv(input_.board, *simulation.conflicts()));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {

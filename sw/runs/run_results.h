@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,21 +25,22 @@ InputFolder keep_pictures(PairSource& pairs, files::OutputFolder& folder);
 // Throws std::runtime_error if they cannot be written.
 void save_frame(const RunInput& input, const Result& result);
 
-// Takes what the simulation has recorded since the last add(). With --record it appends this to the files of
-// the result folder, which the constructor begins. With --trace it hands this to the traces; the caller
-// commits them. finish() adds what is complete only at the end of the run.
+// The frames that a run records without --record.
+inline constexpr std::uint64_t kRecordedFrames = 60;
+
+// Takes what the simulation has recorded since the last add(). With RunInput::recorded_frames it appends this
+// to the files of the result folder, which the constructor begins: the rows of these frames, the time line
+// until the last of them is delivered, and all latencies. With --trace it hands all records to the traces;
+// the caller commits them. finish() adds what is complete only at the end of the run.
 class Records {
  public:
-  // Adds text to the end of a file.
-  using Append = std::function<void(const std::string& name, const std::string& text)>;
-
-  Records(const RunInput& input, Append append);
+  explicit Records(const RunInput& input);
   void add(Simulation& simulation);
   void finish(Simulation& simulation);
 
  private:
   const RunInput& input_;
-  Append append_;
+  std::uint64_t end_ps_ = UINT64_MAX;  // of the time line in the folder
 };
 
 // For a run that ended after `frames_done` frames: drops --truth, and prints a note, if the last frame does

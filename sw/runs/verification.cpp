@@ -46,7 +46,7 @@ void run_other(const RunInput& input, const process::Child::Tell& tell) {
   if (input.timing_only) pairs = blank_pairs(input.board);
   Binder binder;
   RunMode mode = input.mode();
-  mode.record = false;
+  mode.recorded_frames = 0;
   mode.fidelity = input.fidelity(!input.fast);
   // Pairs of a client cannot be opened again; this process has a copy of them.
   const auto simulation =

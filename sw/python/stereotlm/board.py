@@ -474,12 +474,13 @@ class Run:
     def chart(self):
         """The memory chart of the board with the traffic of the run, as SVG. The run is simulated again."""
         of_pictures = {"left", "right", "sequence", "video", "video_layout", "synthetic", "truth", "verify",
-                       "truth_scale", "save_frames", "record", "trace", "trace_window"}
+                       "truth_scale", "save_frames", "record", "no_record", "trace", "trace_window"}
         options = {name: value for name, value in self._options.items() if name not in of_pictures}
         options["frames"] = self.statistics["frames"]
         with temporary_folder() as folder:
             out = pathlib.Path(folder) / "run"  # pixels change no count
-            self.board._execute("run", *_options({**options, "timing_only": True, "out": out}))
+            simulated = {**options, "timing_only": True, "no_record": True, "out": out}
+            self.board._execute("run", *_options(simulated))
             return _chart(lambda command, *words: execute(command, out, *words))
 
     def __repr__(self):

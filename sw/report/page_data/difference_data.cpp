@@ -9,6 +9,7 @@
 #include "sw/explore/store/store.h"
 #include "sw/report/difference_tables.h"
 #include "sw/report/page_data/page_data.h"
+#include "sw/report/page_data/recording_data.h"
 
 namespace stereotlm::report {
 namespace {
@@ -100,7 +101,9 @@ Json json_of(const stats::PixelComparison& pixels) {
 
 Json run_data_of(const ComparedRun& compared) {
   Json data = run_data(compared.run, compared.tables);
-  Json waits = compared.waits.json();
+  RecordingData recording(compared.run.board, false, compared.run.folder);
+  if (!recording.add_folder(compared.run.statistics)) return data;
+  Json waits = recording.json();
   waits.erase("tiles");
   for (Json& stalls : waits["stalls"]) stalls.erase("tiles");
   data["recording"] = std::move(waits);

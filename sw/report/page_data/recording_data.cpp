@@ -22,6 +22,7 @@
 #include "platform/conflicts.h"
 #include "platform/figures.h"
 #include "platform/timeline_records.h"
+#include "sw/runs/run_results.h"
 #include "sw/stats/record_csv.h"
 #include "sw/stats/stats_json.h"
 
@@ -33,7 +34,7 @@ using Amounts = std::vector<std::uint64_t>;
 
 }  // namespace
 
-// Reads the lines of a CSV file that `run --record` has written, which quotes nothing.
+// Reads the lines of a CSV file that `run` has recorded, which quotes nothing.
 class CsvLines {
  public:
   // `head`: the first line, which all others must equal in the number of cells.
@@ -144,8 +145,8 @@ double real(std::uint64_t number) { return static_cast<double>(number); }
 
 }  // namespace
 
-// Where in the picture the ports stall: sums over all frames of rows.csv and conflicts.csv. A line is a line
-// of tiles; [0] is the fill, before the first one.
+// Where in the picture the ports stall: sums over all recorded frames, of rows.csv and conflicts.csv. A line
+// is a line of tiles; [0] is the fill, before the first one.
 class ConflictData {
  public:
   ConflictData(const platform::BoardConfig& board, const std::filesystem::path& folder)
@@ -211,8 +212,12 @@ class ConflictData {
     });
   }
 
+  // Whether the run may have recorded only its first frames.
+  bool may_be_part() const { return frame_cycles_.size() == runs::kRecordedFrames; }
+
   // Checks the identities of the whole files with the figures of their run.
   void check(const platform::Statistics& statistics) {
+    const bool is_part = may_be_part() && frame_cycles_.size() < statistics.frames;
     platform::Audit audit;
     sums_.frames = frame_cycles_.size();
     const auto pipeline = static_cast<std::uint64_t>(board_.fpga.pipeline_latency_cycles);
@@ -221,10 +226,10 @@ class ConflictData {
                   "frame_cycles", statistics.frame_cycles[frame]);
       sums_.cycles += frame_cycles_[frame];
     }
-    sums_.check_rows(fpga::Requesters(platform::core_ports(board_)), statistics, audit);
+    if (!is_part) sums_.check_rows(fpga::Requesters(platform::core_ports(board_)), statistics, audit);
     rows_csv_.finish(audit);
     platform::Audit of_tiles;
-    sums_.check_tiles(fpga::Requesters(platform::core_ports(board_)), statistics, of_tiles);
+    if (!is_part) sums_.check_tiles(fpga::Requesters(platform::core_ports(board_)), statistics, of_tiles);
     for (std::size_t line = 0; line < cycles_.size(); ++line) {
       const std::string name =
           line == 0 ? "recorded: fill" : fmt::format("recorded: row {} of tiles", line - 1);
@@ -365,7 +370,8 @@ class TimelineData {
     });
   }
 
-  void check(const platform::Statistics& statistics) const {
+  // `may_be_part`: whether the events may end before those of the run.
+  void check(const platform::Statistics& statistics, bool may_be_part) const {
     platform::Audit of_latencies;
     of_latencies.equal("recorded: latencies", latencies_.size(), "frames", statistics.frames);
     latencies_csv_.finish(of_latencies);
@@ -378,7 +384,7 @@ class TimelineData {
                       event.camera_frame.value_or(UINT64_MAX), "that in latency.csv",
                       latencies_[static_cast<std::size_t>(*event.frame)][kLatencyCameraFrame]);
     }
-    sums.check(statistics, of_events);
+    if (!may_be_part) sums.check(statistics, of_events);
     events_csv_.finish(of_events);
     std::vector<platform::Delivery> deliveries;
     for (const Latency& latency : latencies_)
@@ -392,6 +398,8 @@ class TimelineData {
       of_figures.fail("recorded: " + difference);
     latencies_csv_.finish(of_figures);
   }
+
+  std::uint64_t last_camera_frame() const { return latencies_.back()[kLatencyCameraFrame]; }
 
   Json json() const {
     return {{"events", events_json()}, {"waits", waits_json()}, {"latency", latency_json()}};
@@ -458,7 +466,7 @@ class TimelineData {
     return json;
   }
 
-  // The sums of all waits, by who waits and why.
+  // The sums of all recorded waits, by who waits and why.
   Json waits_json() const {
     std::map<std::pair<std::string, std::string>, std::uint64_t> sums;
     for (const platform::TimelineEvent& event : events_) {
@@ -526,9 +534,11 @@ bool RecordingData::add_folder(const platform::Statistics& statistics) {
     for (std::string line; std::getline(file, line);) add(name, file.eof() ? line : line + '\n');
   }
   conflicts_->check(statistics);
-  if (timeline_) timeline_->check(statistics);
+  if (timeline_) timeline_->check(statistics, conflicts_->may_be_part());
   return true;
 }
+
+std::uint64_t RecordingData::last_camera_frame() const { return timeline_->last_camera_frame(); }
 
 Json RecordingData::json() const {
   Json json = conflicts_->json();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,8 +13,8 @@
 
 namespace stereotlm::report {
 
-// The part `recording` of a page's data: the files that `run --record` writes, as sums over all frames and as
-// a limited number of events, so that the page stays small however long the run is.
+// The part `recording` of a page's data: the files that `run --out` records, as sums over the recorded frames
+// and as a limited number of events, so that the page stays small however long the run is.
 class RecordingData {
  public:
   // Values of all maps of stalls together, and of one map. Tiles are put together until a map has no more.
@@ -30,11 +31,14 @@ class RecordingData {
   // Adds whole lines of one file, in their order; without a time line only of conflict files. Throws
   // std::runtime_error if something is not as `run` writes it: "PATH:LINE: column = value: rule".
   void add(const std::string& name, std::string_view text);
-  // Adds the files of the folder, and checks their identities with the figures of the run. Throws as add()
-  // does. Returns false, and adds nothing, if they are not there.
+  // Adds the files of the folder, and checks their identities with the figures of the run, as far as its
+  // frames are recorded. Throws as add() does. Returns false, and adds nothing, if they are not there.
   bool add_folder(const platform::Statistics& statistics);
 
   nlohmann::ordered_json json() const;
+
+  // The camera frame that the last frame of the run shows. With a time line only.
+  std::uint64_t last_camera_frame() const;
 
  private:
   std::filesystem::path folder_;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <set>
@@ -22,11 +21,10 @@
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
-#include "sw/process/streams.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/page_data.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/explanation.h"
-#include "sw/runs/progress.h"
 #include "sw/stats/stats_json.h"
 
 namespace stereotlm::report {
@@ -35,12 +33,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using platform::BoardConfig;
 
-constexpr std::chrono::milliseconds kBetweenPolls{100};
-
 // The command that runs the run again, with the options of run.json that its figures depend on.
 std::string command_of(const runs::RecordedRun& run) {
-  static const std::set<std::string> others = {"schema", "command",     "version",
-                                               "verify", "save_frames", "record"};
+  static const std::set<std::string> others = {"schema",      "command", "version",  "verify",
+                                               "save_frames", "record",  "no_record"};
   std::string text =
       "stereotlm run " + files::shell_word((std::filesystem::path(run.folder) / "config.yaml").string());
   const auto add = [&text](const Json& value) {
@@ -201,36 +197,16 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
   return data;
 }
 
-bool add_repetition(const runs::RecordedRun& run, runs::RunInput& input, Json& data) {
-  RecordingData recording(run.board, input.camera);
-  runs::Rerun rerun(
-      run, [&recording](const std::string& name, const std::string& text) { recording.add(name, text); });
-  runs::ProgressLine progress(fmt::format("{} frames of '{}' are repeated", run.options.frames, run.folder));
-  std::uint64_t frames = 0;
-  std::uint64_t last = 0;  // camera frame
-  while (true) {
-    do {
-      if (process::interrupted()) return false;
-      progress.show(frames, run.options.frames, [&](double seconds) {
-        return runs::progress_text(frames, run.options.frames, "frames repeated", seconds);
-      });
-    } while (!rerun.has_news(kBetweenPolls));
-    const auto frame = rerun.next();
-    if (!frame) break;
-    ++frames;
-    last = frame->number;
-  }
+bool add_recording(const runs::RecordedRun& run, runs::RunInput& input, Json& data) {
+  RecordingData recording(run.board, input.camera, run.folder);
+  if (!recording.add_folder(run.statistics)) return false;
   data["recording"] = recording.json();
   if (run.options.timing_only) return true;
+  const std::uint64_t last = input.camera ? recording.last_camera_frame() : run.options.frames - 1;
   kernels::GrayImage left = input.pairs->pair(last).left;
   if (input.tables.left) left = kernels::rectify(left, *input.tables.left);
   data["pictures"]["left"] = picture_url(left);
   return true;
-}
-
-void add_recorded_files(const runs::RecordedRun& run, Json& data) {
-  RecordingData recording(run.board, run.options.source == "camera", run.folder);
-  if (recording.add_folder(run.statistics)) data["recording"] = recording.json();
 }
 
 Json knobs_data(const BoardConfig& board, runs::Explanation& explanation) {

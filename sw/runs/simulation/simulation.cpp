@@ -91,7 +91,11 @@ std::vector<Result> Simulation::advance() {
   return std::move(new_);
 }
 
-void Simulation::record_conflicts() { core().record(conflicts_.emplace(board_).recorder()); }
+void Simulation::record_conflicts(std::uint64_t frames) {
+  recorded_frames_ = frames;
+  conflicts_.emplace(board_).recorder().record_only(frames);
+  core().record(conflicts_->recorder());
+}
 
 void Simulation::trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles,
                        platform::BusObserver& buses) {
@@ -110,7 +114,7 @@ std::vector<fpga::FrameConflicts> Simulation::take_conflicts() {
 }
 
 void Simulation::check_conflicts(platform::Statistics& statistics) const {
-  if (!conflicts_) return;
+  if (!conflicts_ || statistics.frames > recorded_frames_) return;
   for (std::string& failed : conflicts_->failed(statistics)) statistics.failed.push_back(std::move(failed));
 }
 
@@ -147,12 +151,12 @@ std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
   if (mode.camera) {
     auto computer =
         std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
-    if (mode.record) computer->record_timeline();
+    if (mode.recorded_frames > 0) computer->record_timeline();
     simulation = std::move(computer);
   } else {
     simulation = std::make_unique<PreloadedSimulation>(board, tables, pairs, mode, binder);
   }
-  if (mode.record) simulation->record_conflicts();
+  if (mode.recorded_frames > 0) simulation->record_conflicts(mode.recorded_frames);
   return simulation;
 }
 

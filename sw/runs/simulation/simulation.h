@@ -25,6 +25,8 @@ class Binder;
 
 namespace stereotlm::runs {
 
+inline constexpr std::uint64_t kAllFrames = UINT64_MAX;
+
 // The result of a frame.
 struct Result {
   std::uint64_t number = 0;  // number of the camera frame; it shows pair `number` modulo the number of pairs
@@ -64,10 +66,10 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // To be called regularly, because they fill memory, and before statistics(). A board alone has none.
   virtual platform::TimelineRecords take_timeline() { return {}; }
 
-  // Records where and when the ports of the core stall, from the next frame of the core on. To be called
-  // before advance(). A board alone then finishes its running frame when it ends early. statistics() also
-  // checks the identities of what is recorded.
-  void record_conflicts();
+  // Records where and when the ports of the core stall, in its first `frames` frames. To be called before
+  // advance(). A board alone then finishes its running frame when it ends early. If all frames are recorded,
+  // statistics() also checks the identities of the records.
+  void record_conflicts(std::uint64_t frames = kAllFrames);
   // The frames of the core that have ended since the last call. To be called as take_timeline().
   std::vector<fpga::FrameConflicts> take_conflicts();
   // Null if conflicts are not recorded.
@@ -134,6 +136,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   std::vector<Result> new_;  // results since the last advance() began
   Result last_;
   std::optional<platform::Conflicts> conflicts_;
+  std::uint64_t recorded_frames_ = kAllFrames;
   std::optional<fpga::CycleRecorder> cycles_;
   std::optional<platform::BusTrace> buses_;
   fpga::CycleObserver* cycle_observer_ = nullptr;
@@ -146,7 +149,9 @@ struct RunMode {
   bool camera = true;  // true: the whole computer; false: the board alone (preloaded)
   fpga::Fidelity fidelity = fpga::Fidelity::kFast;
   std::uint64_t frames = 1;
-  bool record = false;  // see Simulation::take_conflicts(); the whole computer: also take_timeline()
+  // The first frames whose conflicts are recorded; 0: nothing is recorded. The time line of the whole
+  // computer is recorded to its end.
+  std::uint64_t recorded_frames = 0;
 };
 
 // Creates a CameraSimulation, or a simulation of the board alone with an ideal host, in which frame f shows

@@ -5,7 +5,7 @@ import signal
 
 import program
 from pictures import read_png
-from program import CAMERA_RATES, PROGRESS, RESULT_FILES, SMALL
+from program import CAMERA_FILES, CAMERA_RATES, PROGRESS, SMALL
 from program import ProgramTest, Terminal, run, sets
 
 
@@ -23,7 +23,7 @@ class CameraTest(ProgramTest):
 class Results(CameraTest):
     def test_the_same_run_gives_the_same_bytes_and_cameras_are_the_default(self):
         self.camera("--frames", "5")
-        self.is_in(self.out, *RESULT_FILES)
+        self.is_in(self.out, *CAMERA_FILES)
         self.assertEqual(self.run_json()["source"], "camera")
         with self.unchanged(self.out):
             self.camera("--frames", "5")

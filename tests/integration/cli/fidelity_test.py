@@ -47,8 +47,9 @@ class TimingOnly(FidelityTest):
                 timing = [*source, "--timing-only", "--frames", "4"]
                 without = self.files_of(*timing)
                 self.assertEqual(without, {name: whole[name] for name in without})
-                self.assertEqual(sorted(without), ["config.yaml", "said", "stats.json"])
-                self.same_at_both(*timing)
+                others = [name for name in without if not name.endswith(".csv")]
+                self.assertEqual(sorted(others), ["config.yaml", "said", "stats.json"])
+                self.same_at_both(*source, "--timing-only", "--frames", "65")  # more than are recorded
 
     def test_goes_with_pictures_that_are_checked(self):
         self.succeeds(self.run_it("--timing-only", *self.pair, "--out", self.out))

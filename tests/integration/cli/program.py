@@ -43,7 +43,10 @@ PRELOADED = ["--source", "preloaded"]
 # A frame of the small core takes 1.6 times as long as one of the cameras, as on the paper's board at 7x7.
 CAMERA_RATES = sets("cameras.frame_rate_hz=1000", f"fpga.clock_mhz={5992 / 1600}")
 CYCLE = ["--fidelity", "cycle"]  # also for runs that have to take a while
-RESULT_FILES = "config.yaml disparity.pfm disparity.png disparity_color.png run.json stats.json".split()
+# Of a run with --source preloaded, and of one with cameras.
+RESULT_FILES = ("config.yaml conflicts.csv disparity.pfm disparity.png disparity_color.png rows.csv run.json "
+                "stats.json").split()
+CAMERA_FILES = [*RESULT_FILES, "latency.csv", "timeline.csv"]
 
 PROGRESS = re.compile(
     r"(\d+\.\d\d)/(\d+) frames   (\d+\.\d) %   (\d+\.\d\d) M cycles/s   (\d+\.\d\d) frames/s   (\S+) left"

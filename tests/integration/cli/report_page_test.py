@@ -60,7 +60,7 @@ def core():
 
 @functools.cache
 def computer():
-    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6", "--record")
+    return shared_run("computer", *CAMERA_RATES, *SHARED, "--frames", "6")
 
 
 def two_computers():
@@ -647,6 +647,19 @@ class Tools(PageTest):
         self.assertAlmostEqual(self.browser.run(box, "#time .left-out") * 4,
                                self.browser.run(box, "#time .brush-x"), delta=8)
 
+    def test_a_part_of_a_run_has_the_work_and_the_waits_of_that_part(self):
+        title = lambda: self.browser.text("#time h2")
+        self.browser.open(page_of(computer()))
+        whole = title()
+
+        def change(data):
+            stats = data["run"]["stats"]
+            stats.update(frames=100 * stats["frames"], cycles=100 * stats["cycles"])
+
+        self.opened(page_of(computer()), change)
+        self.assertEqual(title(), whole)
+        self.assertIn("The first 6 of 600 frames are recorded.", self.browser.text("#time"))
+
     def test_sliders_move_the_picture_and_the_overlay(self):
         self.browser.open(page_of(computer()))
         self.browser.drawn()
@@ -713,11 +726,11 @@ class Tools(PageTest):
         self.assertIn("allocation.left_lut", keys)
         self.assertLess(len(keys), 8)
 
-    def test_charts_that_quick_leaves_out_say_so(self):
+    def test_charts_that_are_left_out_say_why(self):
         without = lambda data: [data["run"].pop(key) for key in ("recording", "knobs")]
         self.opened(page_of(computer()), without)
-        for chart in ("rows", "time", "knobs"):
-            self.assertIn("--quick", self.browser.text(f"#{chart}"))
+        for chart, option in (("rows", "--no-record"), ("time", "--no-record"), ("knobs", "--quick")):
+            self.assertIn(option, self.browser.text(f"#{chart}"))
             self.assertEqual(self.browser.all(f"#{chart} svg"), [])
 
 

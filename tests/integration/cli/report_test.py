@@ -1,6 +1,7 @@
 """report: the page's data, and what is refused. The page itself: report_page_test.py."""
 
 import base64
+import csv
 import json
 import os
 import re
@@ -8,11 +9,17 @@ import shutil
 import sqlite3
 
 import program
+from pictures import read_png
 from report_data import data_of
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
 
 SHARED = sets("allocation.left_lut=bank0")
 MOST_BYTES = 1_000_000
+
+
+def csv_rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
 
 
 class ReportTest(ProgramTest):
@@ -90,14 +97,45 @@ class Run(ReportTest):
     def test_without_pixels_has_no_pictures(self):
         self.assertNotIn("pictures", self.data(self.run_of("a", *PRELOADED, "--timing-only"))["run"])
 
-    def test_quick_simulates_nothing_and_takes_what_the_run_has_recorded(self):
-        plain = self.data(self.run_of("a", *PRELOADED), "--quick")["run"]
-        self.assertNotIn("recording", plain)
-        self.assertNotIn("knobs", plain)
-        self.assertIn("disparity", plain["pictures"])
-        folder = self.run_of("b", *CAMERA_RATES, *SHARED, "--frames", "3", "--record")
-        self.assertEqual(self.data(folder, "--quick")["run"]["recording"],
-                         self.data(folder)["run"]["recording"])
+    def test_quick_leaves_out_the_changes(self):
+        folder = self.run_of("a", *PRELOADED)
+        (quick, whole) = (self.data(folder, *more)["run"] for more in (["--quick"], []))
+        self.assertEqual({"knobs": whole.pop("knobs"), **whole}.keys() - quick.keys(), {"knobs"})
+        self.assertEqual(whole, quick)
+
+    def test_of_a_run_that_has_recorded_nothing_is_a_page_and_a_note(self):
+        folder = self.run_of("a", *PRELOADED, "--no-record")
+        process = run("report", folder, "--quick", "--out", self.page)
+        self.succeeds(process)
+        self.assertIn(f"note: '{folder}': the run has recorded nothing", process.stderr)
+        data = data_of(self.page)["run"]
+        self.assertNotIn("recording", data)
+        self.assertEqual(set(data["pictures"]), {"disparity", "disparities"})
+
+    def test_shows_the_first_frames_of_a_long_run_and_the_latencies_of_all(self):
+        folder = self.run_of("a", *CAMERA_RATES, *SHARED, "--timing-only", "--frames", "70")
+        whole = self.run_of("b", *CAMERA_RATES, *SHARED, "--timing-only", "--frames", "70", "--record")
+        short, long = (self.data(each, "--quick")["run"]["recording"] for each in (folder, whole))
+        self.assertEqual((short["frames"], long["frames"]), (60, 70))
+        self.assertEqual(short["latency"], long["latency"])
+        last = sum(self.stats(folder)["frame_cycles"][:60])
+        self.assertLess(sum(short["rows"]["cycles"]), last)
+        ends = [row[5] for row in short["events"]["rows"]]
+        rows = [row for row in csv_rows(whole / "timeline.csv") if int(row["end_ps"]) <= max(ends)]
+        self.assertEqual(rows, csv_rows(folder / "timeline.csv"))
+        delivered = csv_rows(folder / "latency.csv")[59]
+        self.assertLessEqual(max(ends), int(delivered["captured_ps"]) + int(delivered["latency_ps"]))
+
+    def test_shows_the_left_picture_of_the_last_frame(self):
+        pairs = self.sequence(4)
+        for number, source in enumerate((PRELOADED, CAMERA_RATES)):
+            out = self.folder / f"run{number}"
+            self.succeeds(run("run", "fpl2003", *SMALL, *source, "--sequence", pairs, "--frames", "6",
+                              "--save-frames", "--out", out))
+            last = max((out / "frames").iterdir())
+            url = self.data(out, "--quick")["run"]["pictures"]["left"].removeprefix("data:image/png;base64,")
+            shown = self.file("shown.png", base64.b64decode(url))
+            self.assertEqual(b"".join(map(bytes, read_png(shown)[3])), self.side(int(last.stem) % 4, "left"))
 
 
 class RecordedFiles(ReportTest):

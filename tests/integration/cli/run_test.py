@@ -66,6 +66,22 @@ class ResultFiles(ProgramTest):
         self.assertEqual(process.stderr, f"stereotlm: note: --left '{left}': colour, converted to grey\n")
 
 
+class Records(ProgramTest):
+    def test_are_of_the_first_60_frames_unless_all_or_none_are_wanted(self):
+        options = ["--timing-only", "--frames", "61", "--out", self.out]
+        rows = lambda: (self.out / "rows.csv").read_text().split()[1:]
+        stats = []
+        for more, frames in ((), 60), (["--record"], 61), (["--trace", f"perfetto:{self.folder / 't'}"], 61):
+            self.succeeds(self.run_small(*options, *more))
+            self.assertEqual(len({line.split(",")[0] for line in rows()}), frames, more)
+            stats.append((self.out / "stats.json").read_bytes())
+        self.succeeds(self.run_small(*options, "--no-record"))
+        self.is_in(self.out, "config.yaml", "run.json", "stats.json")
+        stats.append((self.out / "stats.json").read_bytes())
+        self.assertEqual(len(set(stats)), 1)
+        self.assertTrue(self.run_json()["no_record"])
+
+
 class Output(ProgramTest):
     def test_a_table_is_printed_and_nothing_on_standard_error(self):
         process = self.run_small()
@@ -200,7 +216,8 @@ class Interrupted(ProgramTest):
                      "ssram.default.words=4194304")
         with self.unchanged(self.out):
             pair = ["--left", big, "--right", big]
-            terminal = Terminal(["run", "fpl2003", *PRELOADED, *CYCLE, *pair, *board, "--out", self.out])
+            terminal = Terminal(["run", "fpl2003", *PRELOADED, *CYCLE, *pair, *board, "--no-record", "--out",
+                                 self.out])
             self.assertEqual(terminal.interrupt(PROGRESS, signal.SIGINT), (130, ""))
             self.assertIn("interrupted after 0 of 1 frames: there is no result", terminal.text)
 

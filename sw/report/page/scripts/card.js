@@ -93,7 +93,7 @@ export const addLeftOut = (page, id, title) => addChart(page, {
   title,
   note: id === 'knobs' ?
       'Left out by --quick. `stereotlm report` without it tries single changes of the board.' :
-      'Left out by --quick, because the run was not recorded.'
+      'The run has recorded nothing. `stereotlm run --out` does, without --no-record.'
 });
 
 // The names of colours, in a line: [[name, css colour], ..].

@@ -152,7 +152,7 @@ export function addTimeLine(page, run) {
         const place = {x: atPs(known), y: 0, width: atPs(from) - atPs(known), height};
         plot.append(mark(
             s('rect', {...place, class: 'left-out'}),
-            ['Events of this time are not in the page', 'run --record --out writes all to timeline.csv']));
+            ['Events of this time are not in the page', 'timeline.csv of the run has them']));
       }
       known = Math.max(known, to);
     }
@@ -172,7 +172,8 @@ export function addTimeLine(page, run) {
   const zoom = new Zoom(
       {last, least: kLeastPs, step: 0.5, from: Math.min(begin, early), to: early},
       [['◀', 'Earlier'], ['▶', 'Later'], 'All'], () => chart.redraw());
-  const works = run.stats.cycles / settingOf(run, 'fpga.clock_mhz') * 1e6 / last;
+  const {frames} = run.recording;
+  const works = sum(run.recording.rows.cycles) / settingOf(run, 'fpga.clock_mhz') * 1e6 / last;
   const drops = run.stats.cameras[0].dropped_frames;
   const firstFrame = Math.min(...events.filter(({kind}) => kind === 'frame').map(event => event.start_ps));
   const before = events.filter(
@@ -186,6 +187,7 @@ export function addTimeLine(page, run) {
     note: [
       waits.note, drops > 0 && `${droppedText(run)} Crosses: dropped frames.`,
       'The number in a bar is the frame; thin grey bars are waits. Drag to choose the time that is shown.',
+      frames < run.stats.frames && `The first ${frames} of ${count(run.stats.frames, 'frame')} are recorded.`,
       recorded.all > recorded.rows.length &&
           `The page has ${whole(recorded.rows.length)} of ${
               whole(recorded.all)} events: those of the beginning, of ` +
@@ -226,8 +228,8 @@ function addPercentiles(page, latency) {
         fixed(latency.max, 1)} ms`,
     body: htmlTable(...table),
     note:
-        'From the first pixel of a capture to the results on the host. What of it is waiting was left out ' +
-        'by --quick, because the run was not recorded.',
+        'From the first pixel of a capture to the results on the host. What of it is waiting was not ' +
+        'recorded.',
     numbers: () => table
   });
 }

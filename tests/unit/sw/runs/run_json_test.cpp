@@ -61,7 +61,7 @@ TEST(RunJson, NamesEveryOptionAndTheSumOfEveryInput) {
 }
 )");
   options.calibration = InputCalibration{{"/c.yaml", "dd"}, {"/c_left.lut", "ee"}, {"/c_right.lut", "ff"}};
-  options.verify = options.save_frames = options.record = true;
+  options.verify = options.save_frames = options.record = options.no_record = true;
   options.frames = kLargest;
   text_of(options);
 }
