@@ -202,10 +202,10 @@ class CaptureFifo {
   bool drops_line_ = false;           // its other words are dropped
   std::uint64_t dropped_pixels_ = 0;  // pixels dropped up to the end of the line
 
+  int owed_ = 0;  // number of the oldest words that were complete at the last grant and have not left
   // The words in the FIFO, oldest first. A new range begins behind words that were dropped.
   std::vector<FrameWords> ranges_;
   int occupancy_ = 0;  // number of words in the FIFO, complete or being filled
-  int owed_ = 0;       // number of the oldest words that were complete at the last grant and have not left
 };
 
 }  // namespace stereotlm::capture

@@ -32,7 +32,8 @@ PciBusControl::PciBusControl(const PciBusConfig& config)
 
 void PciBusControl::request(std::size_t master, PciMasterIf& from, std::uint64_t from_ps) {
   if (requests_[master].clock != kNever) return;
-  requests_[master] = {&from, clock_.edge_at_or_after(from_ps)};
+  // A master often requests again as its burst ends.
+  requests_[master] = {&from, from_ps == last_ps_ ? free_clock_ - 1 : clock_.edge_at_or_after(from_ps)};
   if (state_ == State::kFree) {
     await_request();
   } else if (state_ == State::kWords && master != running_.master) {
@@ -70,6 +71,7 @@ void PciBusControl::decide(std::uint64_t now_ps) {
   const std::uint64_t clock = std::exchange(decision_clock_, kNever);
   next_ps_ = kNever;
   free_clock_ = clock + 1;  // in case that no request is used
+  last_ps_ = now_ps;
   state_ = State::kOccupied;
   std::size_t master = last_granted_;
   for (std::size_t tried = 0; tried < requests_.size(); ++tried) {
@@ -117,7 +119,7 @@ void PciBusControl::begin_words(std::uint64_t first_clock) {
   running_.result.first_data_clock = first_clock;
   running_.result.words_per_clock = words_per_clock_;
   state_ = State::kWords;
-  end_words_at(first_clock + (running_.accepted + words_per_clock_ - 1) / words_per_clock_);
+  end_words_at(first_clock + (words_per_clock_ == 2 ? (running_.accepted + 1) / 2 : running_.accepted));
   cut_words();
 }
 
@@ -165,6 +167,7 @@ void PciBusControl::end(std::uint64_t now_ps) {
   busy_clocks_ += running_.end_clock - running_.address_clock;
   count(running_.master, running_.result);
   free_clock_ = running_.end_clock + 1;
+  last_ps_ = now_ps;
   running_.result.end_ps = now_ps;
   if (observer_ != nullptr) report();
   requests_[running_.master].from->end_burst(running_.result);

@@ -158,6 +158,7 @@ class PciBusControl {
   State state_ = State::kFree;
   std::uint64_t next_ps_ = kNever;
   std::uint64_t free_clock_ = 0;           // the first clock that can be an address clock
+  std::uint64_t last_ps_ = kNever;         // time of the clock before it
   std::uint64_t decision_clock_ = kNever;  // in kFree: the clock that decide() is to grant
   bool burst_runs_ = false;
   Running running_;

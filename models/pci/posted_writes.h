@@ -27,13 +27,10 @@ class PostedWrites {
     std::size_t words = 0;
   };
 
-  explicit PostedWrites(std::size_t places) : places_(places) {
-    words_.reserve(2 * places);
-    runs_.reserve(places);
-  }
+  explicit PostedWrites(std::size_t places) : places_(places), words_(2 * places) { runs_.reserve(places); }
 
   std::size_t places() const { return places_; }
-  std::size_t words() const { return words_.size() - first_; }
+  std::size_t words() const { return end_ - first_; }
   std::size_t words_being_sent() const { return sending_; }
   // Whether there are words that are not being sent.
   bool waits() const { return words() > sending_; }
@@ -46,12 +43,14 @@ class PostedWrites {
 
   // Appends words, at most as many as there are free places.
   void push(std::uint64_t address, const void* words, std::size_t count) {
-    words_.resize(words_.size() + count);
-    std::memcpy(words_.data() + words_.size() - count, words, 4 * count);
+    std::memcpy(words_.data() + end_, words, 4 * count);
+    end_ += count;
     if (!runs_.empty() && runs_.back().address + 4 * runs_.back().words == address) {
       runs_.back().words += count;
     } else {
-      runs_.push_back({address, count});
+      Run& run = runs_.emplace_back();
+      run.address = address;
+      run.words = count;
     }
   }
   // Begins a burst of 1..most words. To be called if waits(), and no burst is being sent. The words stay in
@@ -69,7 +68,8 @@ class PostedWrites {
     first_ += sending_;
     sending_ = 0;
     if (first_ < places_) return;
-    words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(first_));
+    std::memmove(words_.data(), words_.data() + first_, 4 * words());
+    end_ -= first_;
     first_ = 0;
   }
 
@@ -82,6 +82,7 @@ class PostedWrites {
   std::size_t places_;
   std::vector<std::uint32_t> words_;
   std::size_t first_ = 0;    // index of the oldest word
+  std::size_t end_ = 0;      // index behind the latest one
   std::vector<Run> runs_;    // the addresses of the words; contiguous words are one run
   std::size_t sending_ = 0;  // words of the burst that is being sent
 };

@@ -61,8 +61,7 @@ struct RandomKnobs {
   // Of computers: captures contend with the frame, by a local bus in step with the core, and the accesses of
   // the frame are regular. The models have a faster way there; it is no knob of section 7.
   bool contended_captures = false;
-  // Of computers: captures go to banks of their own, by a local bus in step with the core. The models skip
-  // most of their lines.
+  // Of computers: captures go to banks of their own, by a local bus in step with the core.
   bool apart_captures = false;
   // Of section 8.
   bool sdram = false;

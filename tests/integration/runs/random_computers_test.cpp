@@ -412,8 +412,8 @@ TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
 
-// Captures into banks that the frame uses. Over many frames, lines of the cameras and their bursts come again
-// in the same state of the core, and are skipped.
+// Captures into banks that the frame uses. Over many frames, bursts of the cameras come again in the same
+// state of the core.
 class LongContendedRun : public testing::TestWithParam<std::vector<std::string>> {};
 
 // The figures of a board with these keys, and with `is_recorded` the rows of its frames.
