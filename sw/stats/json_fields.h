@@ -9,9 +9,9 @@
 
 #include "sw/stats/json_schema.h"
 
-// A struct and its JSON object, described once: fields_of(const Struct*), found in the namespace of the
-// struct, returns a tuple of Field, Part and Merged in the order of the keys. The writer, the reader and the
-// schema of the object follow from it.
+// The JSON object of a struct. For each struct, a function fields_of(const Struct*) in its namespace lists the
+// keys: it returns a tuple of Field, Part and Merged, in the order of the keys. The writer, the reader and the
+// schema of the object follow from this list.
 namespace stereotlm::stats {
 
 using Json = nlohmann::ordered_json;
@@ -42,7 +42,7 @@ struct Part {
 template <typename... Fields>
 Part(const char*, std::tuple<Fields...>) -> Part<Fields...>;
 
-// The keys of a member, which are among those of the struct: all of them, or none if the member is empty.
+// A member whose keys stand among those of the struct itself. If the member is empty, none of them is there.
 template <typename Object, typename Value>
 struct Merged {
   std::optional<Value> Object::*member;
