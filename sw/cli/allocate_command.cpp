@@ -12,6 +12,7 @@
 #include "sw/explore/search/allocation_search.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/sweep/sweep.h"
+#include "sw/files/aside.h"
 #include "sw/files/whole_file.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/simulation/simulate_point.h"

@@ -11,6 +11,7 @@
 
 #include "platform/config/board_keys.h"
 #include "sw/cli/command.h"
+#include "sw/files/aside.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"

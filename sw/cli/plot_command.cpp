@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "sw/cli/command.h"
+#include "sw/files/aside.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"

@@ -9,7 +9,7 @@
 #include "platform/preloaded_system.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
-#include "sw/files/whole_file.h"
+#include "sw/files/aside.h"
 #include "sw/process/child.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,20 +12,14 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "sw/files/whole_file.h"
+
 namespace stereotlm::files {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Calls `action`. Its system errors get the name of the file that the user knows.
-template <typename Action>
-auto named(const std::string& name, const Action& action) {
-  try {
-    return action();
-  } catch (const std::system_error& error) {
-    throw std::runtime_error(fmt::format("'{}': cannot be written: {}", name, error.code().message()));
-  }
-}
+constexpr const char* kUnfinished = "new";  // in the hidden folder
 
 void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
   constexpr mode_t kPermissions = 07777;
@@ -35,28 +28,29 @@ void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
       is_owner_kept || chown(made.c_str(), static_cast<uid_t>(-1), earlier.st_gid) == 0;
   mode_t mode = earlier.st_mode & kPermissions;
   if (!is_owner_kept) mode &= ~static_cast<mode_t>(S_ISUID | S_ISGID);
+  // The group of this process gets the permissions of all other users.
   if (!is_group_kept) mode = (mode & ~static_cast<mode_t>(S_IRWXG)) | (mode & S_IRWXO) << 3U;
   if (chmod(made.c_str(), mode) != 0) fail(errno, made);
 }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
 
-// The hidden file: that of "rows.csv" is ".rows.csv.writing".
+// The hidden folder: that of "rows.csv" is ".rows.csv.writing".
 fs::path aside_of(const fs::path& file) {
   // Limit for the part from the file's name: file systems limit names to 255 bytes.
   constexpr std::size_t kMostBytes = 200;
-  return folder_of(file) / fmt::format(".{}.writing", file.filename().string().substr(0, kMostBytes));
+  return fs::absolute(folder_of(file)) /
+         fmt::format(".{}.writing", file.filename().string().substr(0, kMostBytes));
 }
 
 // Whether both paths lead to the same file, which need not exist.
 bool is_same(const fs::path& a, const fs::path& b) {
-  std::error_code none;
-  if (fs::equivalent(a, b, none)) return true;
   const auto whole = [](const fs::path& path) {
     return fs::weakly_canonical(linked_file(fs::absolute(path)));
   };
+  std::error_code none;
   try {
-    return whole(a) == whole(b);
+    return fs::equivalent(a, b, none) || whole(a) == whole(b);
   } catch (const std::system_error& /*error*/) {
     return false;
   }
@@ -72,6 +66,19 @@ bool is_result(const fs::path& file) {
 }
 
 }  // namespace
+
+std::optional<std::string> result_folder_problem(const fs::path& path) {
+  std::error_code error;
+  fs::path inner = fs::absolute(path, error);
+  if (!error) inner = fs::weakly_canonical(inner, error);
+  for (; !error && inner.has_relative_path(); inner = inner.parent_path()) {
+    const fs::path folder = inner.parent_path();
+    if (is_result(folder / kResultMark))
+      return fmt::format("the result folder '{}' of run holds nothing else: must lie elsewhere",
+                         folder.string());
+  }
+  return std::nullopt;
+}
 
 fs::path linked_file(const fs::path& path) {
   constexpr int kMostLinks = 40;  // the system's limit
@@ -94,89 +101,6 @@ void check_is_another(const fs::path& file, const std::vector<NamedFile>& others
   }
 }
 
-std::optional<std::string> result_folder_problem(const fs::path& path) {
-  std::error_code error;
-  fs::path inner = fs::absolute(path, error);
-  if (!error) inner = fs::weakly_canonical(inner, error);
-  for (; !error && inner.has_relative_path(); inner = inner.parent_path()) {
-    const fs::path folder = inner.parent_path();
-    if (is_result(folder / kResultMark))
-      return fmt::format("the result folder '{}' of run holds nothing else: must lie elsewhere",
-                         folder.string());
-  }
-  return std::nullopt;
-}
-
-void rename_to_new(const fs::path& from, const fs::path& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
-  const bool can_do_both = errno != EINVAL && errno != ENOSYS;  // the file system
-  if (can_do_both || is_there(to))
-    throw fs::filesystem_error("rename", from, to, {can_do_both ? errno : EEXIST, std::generic_category()});
-  fs::rename(from, to);
-}
-
-AsideFile::AsideFile(fs::path file, std::string name) : file_(std::move(file)), name_(std::move(name)) {
-  named(name_, [this] {
-    const fs::path path = aside_of(file_);
-    lock_ = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (lock_ >= 0) {  // another process is writing it, or was killed
-      const bool is_written = !lock_soon(lock_);
-      if (!is_written) unlink(path.c_str());
-      close(std::exchange(lock_, -1));
-      if (is_written) fail(EBUSY, path);
-    }
-    new_.emplace(path);
-    path_ = path;
-    try {
-      lock_ = fcntl(new_->descriptor(), F_DUPFD_CLOEXEC, 0);
-      if (lock_ < 0) fail(errno, path_);
-      const bool is_locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-      if (!is_locked || !is_open_at(lock_, path_)) fail(EBUSY, path_);
-      remover_.emplace("/bin/rm -f -- \"$1\"", std::vector<std::string>{fs::absolute(path_)}, lock_);
-    } catch (...) {  // such as too many open files
-      if (is_open_at(new_->descriptor(), path_)) unlink(path_.c_str());
-      if (lock_ >= 0) close(lock_);
-      throw;
-    }
-  });
-}
-
-AsideFile::~AsideFile() {
-  std::error_code ignored;
-  if (!path_.empty()) fs::remove(path_, ignored);
-  remover_.reset();
-  if (lock_ >= 0) close(lock_);
-}
-
-void AsideFile::write_through(std::string_view bytes) {
-  named(name_, [this, bytes] {
-    new_->write(buffer_);
-    buffer_.clear();
-    new_->write(bytes);
-  });
-}
-
-void AsideFile::complete() {
-  if (!new_) return;
-  flush();
-  named(name_, [this] { new_->close(); });
-  new_.reset();
-}
-
-void AsideFile::take_place(bool replaces) {
-  named(name_, [this, replaces] {
-    struct stat earlier = {};
-    if (replaces && stat(file_.c_str(), &earlier) == 0) {
-      take_owner_and_mode(path_, earlier);
-      fs::rename(path_, file_);
-    } else {
-      rename_to_new(path_, file_);
-    }
-  });
-  path_.clear();
-  remover_.reset();
-}
-
 FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std::string>> marks) {
   return {std::move(called), [marks = std::move(marks)](const fs::path& file) {
             std::ifstream stream(file, std::ios::binary);
@@ -190,16 +114,24 @@ FileKind marked_kind(std::string called, std::vector<std::pair<std::size_t, std:
           }};
 }
 
+void rename_to_new(const fs::path& from, const fs::path& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
+  const bool can_do_both = errno != EINVAL && errno != ENOSYS;  // the file system
+  if (can_do_both || is_there(to))
+    throw fs::filesystem_error("rename", from, to, {can_do_both ? errno : EEXIST, std::generic_category()});
+  fs::rename(from, to);
+}
+
 OutputFile::OutputFile(const fs::path& path, FileKind kind, const std::vector<NamedFile>& others)
     : name_(path.string()), kind_(std::move(kind)) {
-  path_ = named(name_, [&path] { return linked_file(path); });
+  named([&] { path_ = linked_file(path); });
   check_is_another(path, others);
   if (const auto problem = result_folder_problem(path_)) refuse(*problem);
   was_there_ = check();
   const fs::path folder = folder_of(path_);
-  if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
-    refuse(errno == ENOENT ? "there is no such folder"
-                           : "cannot be written: " + std::generic_category().message(errno));
+  if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return;
+  refuse(errno == ENOENT ? "there is no such folder"
+                         : "cannot be written: " + std::generic_category().message(errno));
 }
 
 bool OutputFile::check() const {
@@ -217,22 +149,64 @@ bool OutputFile::check() const {
     refuse("cannot be written: " + std::generic_category().message(errno));
   }
   if (!S_ISREG(status.st_mode)) refuse("is no file");
-  if (status.st_size > 0 && !named(name_, [this] { return kind_.is_own(path_); }))
-    refuse(fmt::format(
-        "exists, and is not known as a {}, which alone is replaced: move it away, or give another file",
-        kind_.called));
-  return true;
+  bool is_own = status.st_size == 0;
+  if (!is_own) named([&] { is_own = kind_.is_own(path_); });
+  if (is_own) return true;
+  refuse(fmt::format(
+      "exists, and is not known as a {}, which alone is replaced: move it away, or give another file",
+      kind_.called));
 }
 
-AsideFile& OutputFile::aside() {
-  if (!aside_) aside_.emplace(path_, name_);
-  return *aside_;
+void OutputFile::begin() {
+  if (aside_) return;
+  named([this] {
+    aside_.emplace(aside_of(path_), [](const fs::path& entry) {
+      if (entry.stem() != kUnfinished || !is_file(entry)) fail(EEXIST, entry);
+    });
+    for (const fs::path& name : entries(aside_->path())) fs::remove(aside_->path() / name);
+    new_.emplace(aside_->path() / kUnfinished);
+  });
+}
+
+void OutputFile::write(std::string_view bytes) {
+  begin();
+  named([&] { new_->write(bytes); });
+}
+
+fs::path OutputFile::unfinished() {
+  begin();
+  return aside_->path() / kUnfinished;
+}
+
+void OutputFile::complete() {
+  begin();
+  named([this] { new_ ? new_->close() : sync(unfinished()); });
+  new_.reset();
 }
 
 void OutputFile::commit() {
   complete();
   check();
-  aside_->take_place(was_there_);
+  named([this, from = unfinished()] {
+    struct stat earlier = {};
+    if (was_there_ && stat(path_.c_str(), &earlier) == 0) {
+      take_owner_and_mode(from, earlier);
+      fs::rename(from, path_);
+    } else {
+      rename_to_new(from, path_);
+    }
+  });
+  aside_.reset();
+}
+
+// Calls `action`. Its system errors get the name of the file that the user knows.
+template <typename Action>
+void OutputFile::named(const Action& action) const {
+  try {
+    action();
+  } catch (const std::system_error& error) {
+    refuse("cannot be written: " + error.code().message());
+  }
 }
 
 void OutputFile::refuse(const std::string& cause) const {

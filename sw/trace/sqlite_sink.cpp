@@ -119,8 +119,8 @@ class Insertion {
 // The database and its tables. The statements end before the database is closed.
 struct Tables {
   explicit Tables(files::OutputFile& file, const std::string& path)
-      : database(file.aside().path().string(), sqlite::Database::Access::kWrite,
-                 sqlite::Database::kBusyTimeout, path) {
+      : database(file.unfinished().string(), sqlite::Database::Access::kWrite, sqlite::Database::kBusyTimeout,
+                 path) {
     // Nobody reads the file before it is complete, and then it replaces the earlier one.
     database.execute("PRAGMA journal_mode=OFF");
     database.execute("PRAGMA synchronous=OFF");

@@ -162,7 +162,7 @@ struct Span {
 // of a signal before the window sets its first value. Changes after the end of the window are left out.
 class Waveform {
  public:
-  Waveform(files::AsideFile& file, const Signals& signals)
+  Waveform(files::OutputFile& file, const Signals& signals)
       : file_(file), signals_(signals), is_touched_(signals.all.size()), is_active_(signals.all.size()) {
     for (const Signal& signal : signals.all) {
       next_values_.push_back(signal.idle);
@@ -269,7 +269,7 @@ class Waveform {
     text_ += line_ends_[signal];
   }
 
-  files::AsideFile& file_;
+  files::OutputFile& file_;
   const Signals& signals_;
   std::vector<std::string> line_ends_;  // [signal]
   std::vector<std::uint32_t> values_;   // [signal]
@@ -445,8 +445,8 @@ class VcdSink : public TraceSink {
 
   void end(const TimeSpan& window) override {
     end_cycles();
-    const Span span =
-        is_fst_ ? write_fst(window) : Waveform(files_.front().aside(), signals_).write(streams_, window);
+    const Span span = Waveform(files_.front(), signals_).write(streams_, window);
+    if (is_fst_) turn_into_fst();
     if (files_.size() > 1) files_.back().write(layout_of(path_.filename().string(), signals_, span));
   }
 
@@ -506,16 +506,17 @@ class VcdSink : public TraceSink {
     std::swap(shown_, now_);
   }
 
-  Span write_fst(const TimeSpan& window) {
-    files::AsideFile text(files::linked_file(path_) += ".vcd", path_.string());
-    const Span span = Waveform(text, signals_).write(streams_, window);
-    text.complete();
-    const fs::path& fst = files_.front().aside().path();
-    const process::CommandEnd end = process::run_command({"vcd2fst", text.path().string(), fst.string()});
-    if (end.status != 0 || fs::file_size(fst) == 0)
+  // The unfinished file has the waveform as VCD before.
+  void turn_into_fst() {
+    files_.front().complete();
+    const fs::path vcd = files_.front().unfinished();
+    const fs::path fst = fs::path(vcd) += ".fst";
+    const process::CommandEnd end = process::run_command({"vcd2fst", vcd.string(), fst.string()});
+    std::error_code none;
+    if (end.status != 0 || fs::file_size(fst, none) == 0 || none)
       throw std::runtime_error(
           fmt::format("{}: vcd2fst ends with status {}: {}", path_.string(), end.status, end.errors));
-    return span;
+    fs::rename(fst, vcd);
   }
 
   fs::path path_;

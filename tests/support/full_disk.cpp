@@ -1,7 +1,6 @@
 // A library for LD_PRELOAD that turns the folder FULL_DISK_FOLDER into a disk of FULL_DISK_BYTES: a write
 // fails with ENOSPC if all files together would need more bytes.
 
-#include <dirent.h>
 #include <dlfcn.h>
 #include <sys/stat.h>
 #include <sys/types.h>
@@ -11,21 +10,21 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace {
 
-// The size of all files in a folder without subfolders.
+// The size of all files in a folder.
 off_t bytes_in(const std::string& folder) {
   off_t bytes = 0;
-  DIR* const entries = opendir(folder.c_str());
-  if (entries == nullptr) return 0;
-  while (const dirent* const entry = readdir(entries)) {
+  std::error_code none;
+  for (auto entry = std::filesystem::recursive_directory_iterator(folder, none); !none && entry != end(entry);
+       entry.increment(none)) {
     struct stat status = {};
-    const std::string path = folder + '/' + entry->d_name;
-    if (stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode)) bytes += status.st_size;
+    if (stat(entry->path().c_str(), &status) == 0 && S_ISREG(status.st_mode)) bytes += status.st_size;
   }
-  closedir(entries);
   return bytes;
 }
 

@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "sw/explore/store/store.h"
+#include "sw/files/aside.h"
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/process/command.h"

@@ -511,7 +511,7 @@ void merge_stores(const Names& inputs, const std::string& store,
       files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
   files::OutputFile file(out, kind);
   {
-    sqlite::Database database(file.aside().path().string(), sqlite::Database::Access::kWrite,
+    sqlite::Database database(file.unfinished().string(), sqlite::Database::Access::kWrite,
                               sqlite::Database::kBusyTimeout, out);
     if (is_interrupted != nullptr) database.interrupt_if(is_interrupted);
     database.execute(

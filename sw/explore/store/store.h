@@ -14,7 +14,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/board_yaml.h"
 #include "platform/statistics.h"
-#include "sw/files/remover.h"
+#include "sw/files/aside.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {

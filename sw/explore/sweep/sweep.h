@@ -13,7 +13,7 @@
 
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
-#include "sw/files/whole_file.h"
+#include "sw/files/aside.h"
 #include "sw/process/command.h"
 #include "sw/sqlite/database.h"
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sw/files/whole_file.h"
+#include "sw/files/aside.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::files {

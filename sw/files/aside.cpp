@@ -1,0 +1,161 @@
+#include "sw/files/aside.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "sw/files/text_forms.h"
+#include "sw/files/whole_file.h"
+
+namespace stereotlm::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+Remover::Remover(const std::string& script, const std::vector<std::string>& words, int lock) {
+  // read fails at the end of the pipe.
+  const std::string command = fmt::format(
+      "trap '' HUP INT QUIT TERM; exec /usr/bin/setsid /bin/sh -c {} stereotlm-remover {} >/dev/null 2>&1",
+      shell_word("read -r _ || { " + script + "; }"), shell_command(words));
+  fcntl(lock, F_SETFD, 0);  // the shell inherits it
+  shell_ = popen(command.c_str(), "we");
+  const int error = errno;
+  fcntl(lock, F_SETFD, FD_CLOEXEC);
+  if (shell_ == nullptr) fail(error, "/bin/sh");
+}
+
+Remover::~Remover() {
+  std::fputs("\n", shell_);
+  pclose(shell_);
+}
+
+NewFile::NewFile(const fs::path& path)
+    : path_(path), descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail(errno, path_);
+}
+
+NewFile::~NewFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void NewFile::flush() {
+  for (std::string_view bytes = buffer_; !bytes.empty();) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) fail(count < 0 ? errno : ENOSPC, path_);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  buffer_.clear();
+}
+
+void NewFile::close() {
+  flush();
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno, path_);
+  sync(path_);
+}
+
+void write_whole_file(const fs::path& path, std::string_view bytes) {
+  NewFile file(path);
+  file.write(bytes);
+  file.close();
+}
+
+Aside::Aside(const fs::path& path, const std::function<void(const fs::path& entry)>& check) : path_(path) {
+  constexpr int kMostTries = 100;
+  try {
+    for (int tries = 1; !try_lock(); ++tries) {
+      if (tries == kMostTries) fail(ENOENT, path_);  // its parent takes no entries, such as /proc/self/fd
+    }
+    for (const fs::path& name : entries(path_)) check(path_ / name);
+    std::vector<std::string> words = {path_};
+    words.insert(words.end(), made_.rbegin(), made_.rend());
+    // A process that is killed together with this one may still write for a moment.
+    remover_.emplace(
+        "[ -e \"$1/earlier\" ] || { for i in 1 2 3 4 5 6 7 8 9; do /bin/rm -rf -- \"$1\" && break; sleep "
+        "0.1; "
+        "done; shift; /bin/rmdir -- \"$@\"; }",
+        words, lock_);
+  } catch (...) {
+    remove_if_empty();
+    throw;
+  }
+}
+
+// Returns false if another process has removed a folder before it was locked: try again.
+bool Aside::try_lock() {
+  std::vector<fs::path> missing;
+  for (fs::path path = path_.parent_path(); !is_there(path); path = path.parent_path())
+    missing.push_back(path);
+  for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
+    if (fs::create_directory(*path)) made_.push_back(*path);
+  }
+  std::error_code error;
+  const bool is_new = fs::create_directory(path_, error);
+  if (error && error != std::errc::no_such_file_or_directory) fail(error.value(), path_);
+  const int folder = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (const int cause = errno; folder < 0 && cause != ENOENT) {
+    if (is_new) rmdir(path_.c_str());
+    fail(cause, path_);
+  }
+  // The Remover of a process that was killed ends within a second. A file system without locks has no EBUSY.
+  constexpr int kTries = 100;
+  for (int tries = 0; folder >= 0 && flock(folder, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++tries) {
+    if (tries == kTries) {
+      close(folder);
+      fail(EBUSY, path_);
+    }
+    usleep(10'000);
+  }
+  if (is_open_at(folder, path_)) lock_ = folder;
+  if (lock_ < 0 && folder >= 0) close(folder);
+  return lock_ >= 0;
+}
+
+void Aside::remove_if_empty() noexcept {
+  std::error_code ignored;
+  if (lock_ >= 0) fs::remove(path_, ignored);
+  for (auto path = made_.rbegin(); path != made_.rend(); ++path) fs::remove(*path, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+Aside::~Aside() {
+  std::error_code ignored;
+  if (!is_there(path_ / "earlier") && !fs::remove(path_, ignored)) fs::remove_all(path_, ignored);
+  remover_.reset();
+  remove_if_empty();
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string variable = "TMPDIR";
+  std::string folder = "/tmp";
+  for (const char* name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"}) {  // the last counts
+    const char* const value = std::getenv(name);
+    if (value != nullptr && *value != '\0') std::tie(variable, folder) = std::pair(name, value);
+  }
+  const auto refuse = [&](const std::string& rule) {
+    throw std::runtime_error(fmt::format("{} = {}: {}", variable, folder, rule));
+  };
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) refuse("must be a folder");
+  std::string path = (fs::path(folder) / "stereotlm_XXXXXX").string();
+  if (mkdtemp(path.data()) == nullptr)
+    refuse(fmt::format("must be a folder that takes temporary files: {}", std::strerror(errno)));
+  try {
+    aside_.emplace(fs::absolute(path), [](const fs::path& /*entry*/) {});
+  } catch (...) {  // such as too many open files
+    rmdir(path.c_str());
+    throw;
+  }
+}
+
+}  // namespace stereotlm::files
