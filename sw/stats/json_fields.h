@@ -9,9 +9,9 @@
 
 #include "sw/stats/json_schema.h"
 
-// The JSON object of a struct. For each struct, a function fields_of(const Struct*) in its namespace lists the
-// keys: it returns a tuple of Field, Part and Merged, in the order of the keys. The writer, the reader and the
-// schema of the object follow from this list.
+// The JSON object of a struct. For each struct, a function fields_of(const Struct*) in its namespace lists
+// the keys: it returns a tuple of Field, Part and Merged, in the order of the keys. The writer, the reader
+// and the schema of the object follow from this list.
 namespace stereotlm::stats {
 
 using Json = nlohmann::ordered_json;
