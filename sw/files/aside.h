@@ -27,7 +27,7 @@ class Remover {
   std::FILE* shell_;  // a pipe to it, which the system closes with this process
 };
 
-// A new file that is written piece by piece. All functions throw std::system_error if a byte cannot be stored.
+// A new file, written piece by piece. All functions throw std::system_error if a byte cannot be stored.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path);  // throws also if the file exists

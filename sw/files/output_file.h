@@ -70,8 +70,8 @@ class OutputFile {
   OutputFile(const std::filesystem::path& path, FileKind kind, const std::vector<NamedFile>& others = {});
 
   void write(std::string_view bytes);
-  // The unfinished file, for a library or a program that writes the content in place of write(). Further files
-  // beside it, with the same name but for their endings, vanish with it.
+  // The unfinished file, for a library or a program that writes the content in place of write(). Files beside
+  // it, with the same name and a further ending, vanish with it.
   std::filesystem::path unfinished();
   // Makes the new content durable. Several files that belong together are all completed before the first of
   // them is committed. No write() may follow.

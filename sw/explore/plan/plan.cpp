@@ -295,17 +295,11 @@ class PlanReader {
       report(key.place, fmt::format("{}: {}: given before, at {}:{}", section, path, first->second.line,
                                     first->second.column));
     }
-    const auto report_overlap = [&](const auto& other) {
-      report(key.place, fmt::format("{}: {}: overlaps {}, given at {}:{}", section, path, other->first,
-                                    other->second.line, other->second.column));
-    };
-    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1)) {
-      const auto around = places_.find(path.substr(0, dot));
-      if (around != places_.end()) report_overlap(around);
-    }
-    for (auto inside = places_.lower_bound(path + '.'); inside != places_.end(); ++inside) {
-      if (inside->first.compare(0, path.size() + 1, path + '.') != 0) break;
-      report_overlap(inside);
+    for (const auto& [other, place] : places_) {
+      if (platform::is_below(path, other) || platform::is_below(other, path)) {
+        report(key.place, fmt::format("{}: {}: overlaps {}, given at {}:{}", section, path, other, place.line,
+                                      place.column));
+      }
     }
     return rule.empty() && is_new;
   }
@@ -530,22 +524,19 @@ class PlanReader {
   void read_sample(const YamlNode& node) {
     const Entries* const entries = read_map("sample", node, {"points", "seed"}, "a map");
     if (entries == nullptr) return;
-    Plan::Sample sample;
-    const auto read = [&](const std::string& name, std::uint64_t least, std::uint64_t most,
-                          std::uint64_t& out) {
-      const YamlNode* const value = find(*entries, name);
-      if (value == nullptr)
-        return report(node.place, fmt::format("sample.{}: missing: {}..{}", name, least, most));
-      const auto number = platform::integer_of(*value);
-      if (!number || *number < 0 || static_cast<std::uint64_t>(*number) < least ||
-          static_cast<std::uint64_t>(*number) > most) {
-        return report("sample." + name, *value, fmt::format("{}..{}", least, most));
-      }
-      out = static_cast<std::uint64_t>(*number);
-    };
     const std::size_t before = findings_.size();
-    read("points", 1, plan_.product_, sample.points);
-    read("seed", 0, std::numeric_limits<std::int64_t>::max() - 1, sample.seed);  // see integer_of()
+    const auto read = [&](const std::string& name, const platform::IntegerRule& rule) {
+      const YamlNode* const value = find(*entries, name);
+      const std::int64_t number = value == nullptr ? -1 : platform::integer_of(*value).value_or(-1);
+      if (value == nullptr) {
+        report(node.place, fmt::format("sample.{}: missing: {}", name, rule.text()));
+      } else if (!rule.allows(number)) {
+        report("sample." + name, *value, rule.text());
+      }
+      return static_cast<std::uint64_t>(number);
+    };
+    const Plan::Sample sample = {read("points", {1, static_cast<std::int64_t>(plan_.product_)}),
+                                 read("seed", {0, std::numeric_limits<std::int64_t>::max() - 1})};
     if (findings_.size() == before) plan_.sample_ = sample;
   }
 

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
+#include <string_view>
 
+#include "sw/explore/store/store.h"
 #include "sw/files/text_forms.h"
 
 namespace stereotlm::explore {
@@ -21,53 +22,45 @@ constexpr int kMostBytes = 20'000;     // of a text
 constexpr int kMostSteps = 1'000'000;  // of SQLite's virtual machine, counted in portions
 constexpr int kStepsOfPortion = 1000;
 // These take as many steps as a number among their arguments says, and cannot be stopped.
-constexpr std::array<const char*, 2> kUnlimitedFunctions = {"printf", "format"};
+constexpr std::array<std::string_view, 2> kUnlimitedFunctions = {"printf", "format"};
 
-// The names that a condition may use, "table.column", in the order of the parameters.
-const std::vector<std::string>& names() {
-  static const std::vector<std::string> kNames = [] {
-    std::vector<std::string> all;
+// The names that a condition may use, "table.column", with the numbers of their parameters.
+const std::map<std::string, int>& parameters() {
+  static const std::map<std::string, int> kParameters = [] {
+    std::map<std::string, int> all = {{kBankCount, 1}, {kSourcePath, 2}, {kFramesPath, 3}};
     for (const platform::Key& key : platform::board_keys()) {
-      if (platform::has_value(key)) all.push_back(key.path == "name" ? "board.name" : key.path);
+      if (platform::has_value(key))
+        all.emplace(key.path == "name" ? "board.name" : key.path, static_cast<int>(all.size()) + 1);
     }
-    all.insert(all.end(), {kBankCount, "run.source", "run.frames"});
     return all;
   }();
-  return kNames;
+  return kParameters;
 }
 
 // The SQL tables for the values of a point: "(SELECT ?1 AS width, ..) AS image, ..". If `has_point` is false,
 // all values are NULL.
 std::string tables_text(bool has_point) {
-  std::vector<std::string> tables;
-  std::map<std::string, std::string> columns;
-  for (std::size_t i = 0; i < names().size(); ++i) {
-    const std::string& name = names()[i];
+  std::map<std::string, std::string> columns;  // [table]
+  for (const auto& [name, number] : parameters()) {
     const std::size_t dot = name.find('.');
-    const std::string table = name.substr(0, dot);
-    std::string& list = columns[table];
-    if (list.empty()) tables.push_back(table);
+    std::string& list = columns[name.substr(0, dot)];
     list += fmt::format("{}{} AS \"{}\"", list.empty() ? "" : ", ",
-                        has_point ? fmt::format("?{}", i + 1) : "NULL", name.substr(dot + 1));
+                        has_point ? fmt::format("?{}", number) : "NULL", name.substr(dot + 1));
   }
   std::string text;
-  for (const std::string& table : tables) {
-    text += fmt::format("{}(SELECT {}) AS {}", text.empty() ? "" : ", ", columns[table], table);
-  }
+  for (const auto& [table, list] : columns)
+    text += fmt::format("{}(SELECT {}) AS {}", text.empty() ? "" : ", ", list, table);
   return text;
 }
 
-// The names of the functions whose result depends only on their arguments. The date functions are removed
-// from SQLite's list, because their argument may be 'now'.
-std::set<std::string> pure_functions(const sqlite::Database& database) {
-  sqlite::Statement list(
-      database, fmt::format("SELECT name FROM pragma_function_list WHERE flags & {}", SQLITE_DETERMINISTIC));
-  std::set<std::string> names;
-  while (list.step()) names.insert(list.text(0));
-  for (const char* const of_dates :
-       {"date", "datetime", "julianday", "strftime", "time", "timediff", "unixepoch"})
-    names.erase(of_dates);
-  return names;
+// The names of the functions whose result depends only on their arguments. Left out are the date functions,
+// whose argument may be 'now', and kUnlimitedFunctions.
+std::set<std::string> allowed_functions(const sqlite::Database& database) {
+  const std::vector<std::string> names = database.texts(fmt::format(
+      "SELECT name FROM pragma_function_list WHERE flags & {} AND name NOT IN ('date', 'datetime', "
+      "'julianday', 'strftime', 'time', 'timediff', 'unixepoch', '{}')",
+      SQLITE_DETERMINISTIC, fmt::join(kUnlimitedFunctions, "', '")));
+  return {names.begin(), names.end()};
 }
 
 }  // namespace
@@ -76,7 +69,7 @@ std::set<std::string> pure_functions(const sqlite::Database& database) {
 // quotes and brackets; SQLite's message then quotes only the text. Then in brackets, which refuses a clause
 // behind the expression, such as LIMIT, and a comment that does not end.
 Conditions::Conditions(const std::vector<Condition>& conditions)
-    : database_("where", sqlite::Database::Access::kMemory), functions_(pure_functions(database_)) {
+    : database_("where", sqlite::Database::Access::kMemory), functions_(allowed_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
   static const std::string kNoPoint = tables_text(false);
   static const std::string kPoint = tables_text(true);
@@ -105,19 +98,12 @@ std::unique_ptr<sqlite::Statement> Conditions::compile(const std::string& sql) {
 int Conditions::authorize(void* conditions, int action, const char* /*first*/, const char* second,
                           const char* /*database*/, const char* /*trigger*/) {
   auto& self = *static_cast<Conditions*>(conditions);
-  if (action == SQLITE_SELECT) return SQLITE_OK;
-  if (action == SQLITE_FUNCTION) {
-    std::string function = second;
-    std::transform(function.begin(), function.end(), function.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const bool is_unlimited = std::find(kUnlimitedFunctions.begin(), kUnlimitedFunctions.end(), function) !=
-                              kUnlimitedFunctions.end();
-    if (!is_unlimited && self.functions_.count(function) > 0) return SQLITE_OK;
-    self.refusal_ =
-        function + (is_unlimited ? "() may take any time" : "() depends on more than its arguments");
-  } else {
-    self.refusal_ = "reads more than the point";
-  }
+  const std::string function = action == SQLITE_FUNCTION ? without_case(second) : "";
+  if (action == SQLITE_SELECT || self.functions_.count(function) > 0) return SQLITE_OK;
+  const bool is_unlimited = std::count(kUnlimitedFunctions.begin(), kUnlimitedFunctions.end(), function) > 0;
+  self.refusal_ = function.empty() ? "reads more than the point"
+                  : is_unlimited   ? function + "() may take any time"
+                                   : function + "() depends on more than its arguments";
   return SQLITE_DENY;
 }
 
@@ -132,23 +118,20 @@ std::string Conditions::reason_of(const sqlite::DatabaseError& error) const {
 
 bool Conditions::hold(const std::vector<BoardValue>& values) {
   if (compiled_.empty()) return true;
-  std::vector<const BoardValue*> given(names().size());
-  const auto place_of = [](const std::string& name) {
-    return static_cast<std::size_t>(std::find(names().begin(), names().end(), name) - names().begin());
+  for (const Compiled& compiled : compiled_) compiled.statement->clear_bindings();
+  const auto bind = [this](const std::string& name, const auto& value) {
+    const auto parameter = parameters().find(name);
+    if (parameter == parameters().end()) return;
+    for (const Compiled& compiled : compiled_) compiled.statement->bind(parameter->second, value);
   };
-  BoardValue banks{kBankCount, std::int64_t{0}};
+  std::int64_t banks = 0;
   for (const BoardValue& value : values) {
-    if (platform::schema_path(value.path) == "ssram.banks.NAME.words") ++std::get<std::int64_t>(banks.value);
-    const std::size_t place = place_of(value.path == "name" ? "board.name" : value.path);
-    if (place < given.size()) given[place] = &value;
+    if (platform::schema_path(value.path) == "ssram.banks.NAME.words") ++banks;
+    bind(value.path == "name" ? "board.name" : value.path, value.value);
   }
-  given[place_of(kBankCount)] = &banks;
+  bind(kBankCount, banks);
   for (const Compiled& compiled : compiled_) {
     sqlite::Statement& statement = *compiled.statement;
-    statement.clear_bindings();
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      if (given[i] != nullptr) statement.bind(static_cast<int>(i) + 1, given[i]->value);
-    }
     portions_ = 0;
     try {
       const bool is_true = statement.step() && statement.is_true(0);
