@@ -69,10 +69,8 @@ class BoardReader {
   }
 
   void read_load(const Key& key, const YamlNode::Entry& entry) {
-    if (!values_.check_use(key.path, entry.value)) return;
-    const bool is_none = entry.value.is("none");
-    if (!is_none && !entry.value.is_map()) return values_.report(key.path, entry.value, key.rule.text);
-    if (is_none) return;
+    if (!values_.check_use(key.path, entry.value) || entry.value.is("none")) return;
+    if (!entry.value.is_map()) return values_.report(key.path, entry.value, key.rule.text);
     board_.pci.load.emplace();
     read_section(key.path, entry.value, entry.key.place);
   }
