@@ -36,7 +36,8 @@ class Check(ProgramTest):
             self.assertRegex(self.succeeds(run("check", name)), rf"\A{name}: ok: [^\n]*\n(?:{device})\n\Z")
 
     def test_explain_takes_the_lanes_of_a_port_as_one(self):
-        shared = [*SMALL, *PRELOADED, *sets("allocation.disparity={rows: [bank0, bank5]}")]
+        result_last = "fpga.priority=[left_pixel, right_pixel, left_lut, right_lut, result, host]"
+        shared = [*SMALL, *PRELOADED, *sets("allocation.disparity={rows: [bank0, bank5]}", result_last)]
         document = json.loads(self.succeeds(run("explain", "eight-banks-four-lanes", *shared, "--json")))
         waits = {}
         for row in document["blame"]:
@@ -46,6 +47,7 @@ class Check(ProgramTest):
         text = self.succeeds(run("explain", "eight-banks-four-lanes", *shared))
         found = re.findall(r"(?m)^  (\w+) +on (\w+) +for (\w+) +([\d.]+)$", text)
         self.assertEqual(len(found), min(5, len(waits)))
+        self.assertEqual(found[0][0], "result")
         for port, bank, by, percent in found:
             self.assertAlmostEqual(float(percent), waits[port, bank, by], delta=0.02)
         self.assertIn("  port left_lut.0-2, left_pixel.0-2, right_pixel.0-2\n", text)

@@ -90,6 +90,18 @@ class Run(ReportTest):
     def test_without_pixels_has_no_pictures(self):
         self.assertNotIn("pictures", self.data(self.run_of("a", *PRELOADED, "--timing-only"))["run"])
 
+    def test_shows_the_left_picture_of_the_last_pair_and_the_first_of_the_busiest_banks(self):
+        pairs = self.sequence(2)
+        of_two, of_last = self.folder / "a", self.folder / "b"
+        self.succeeds(self.run_with("--sequence", pairs, "--out", of_two))
+        last = [pairs / f"{side}_001.png" for side in ("left", "right")]
+        self.succeeds(self.run_small("--out", of_last, left=last[0], right=last[1]))
+        data = self.data(of_two)["run"]
+        self.assertEqual(data["pictures"]["left"], self.data(of_last)["run"]["pictures"]["left"])
+        busy = {bank["name"]: bank["busy_cycles"] for bank in data["stats"]["banks"]}
+        self.assertEqual([name for name in busy if busy[name] == max(busy.values())], ["bank6", "bank7"])
+        self.assertEqual(data["knobs"]["busiest_bank"]["name"], "bank6")
+
     def test_quick_simulates_nothing_and_takes_what_the_run_has_recorded(self):
         plain = self.data(self.run_of("a", *PRELOADED), "--quick")["run"]
         self.assertNotIn("recording", plain)

@@ -93,6 +93,8 @@ TEST(RecordingData, ALongRunHasThreePeriodsOfEventsAndAllSums) {
   const std::uint64_t slowest = 3000 * LongRun::kFrame;
   EXPECT_LT(periods[1][0], slowest);
   EXPECT_GT(periods[1][1], slowest + 9 * LongRun::kFrame);
+  const auto middle = (periods[1][0].get<std::uint64_t>() + periods[1][1].get<std::uint64_t>()) / 2;
+  EXPECT_NEAR(static_cast<double>(middle), slowest + 4.5 * LongRun::kFrame, LongRun::kFrame);
   EXPECT_EQ(periods[2][1], json["events"]["rows"].back()[5]);
   ASSERT_EQ(json["waits"].size(), 1U);
   EXPECT_EQ(json["waits"][0]["ps"], 5000 * 8 * 1000);
