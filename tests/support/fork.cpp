@@ -178,7 +178,7 @@ std::vector<ChildResult> run_in_children(const std::vector<ChildWork>& jobs, int
     throw std::invalid_argument("run_in_children: parallel = " + std::to_string(parallel) +
                                 ": must be at least 1");
   }
-  std::vector<ChildResult> results(jobs.size());
+  std::vector<ChildResult> results(jobs.size(), {kTimedOut, "not begun, because another ran out of time"});
   std::vector<Child> children;
   std::size_t next = 0;
   while (next < jobs.size() || !children.empty()) {
@@ -194,6 +194,7 @@ std::vector<ChildResult> run_in_children(const std::vector<ChildWork>& jobs, int
         results[child.job] = finish(child);
       } else if (Clock::now() >= child.deadline) {
         results[child.job] = give_up(child, timeout);
+        next = jobs.size();
       } else {
         running.push_back(std::move(child));
       }

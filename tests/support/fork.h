@@ -21,15 +21,16 @@ struct ChildResult {
 };
 
 // Runs the work in a forked child and waits for it. The child inherits the memory, returns only the text, and
-// exits without the destructors of static objects. Throws std::system_error if fork() fails.
-ChildResult run_in_child(const ChildWork& work, std::chrono::milliseconds timeout = std::chrono::seconds(60));
+// exits without the destructors of static objects. Throws std::system_error if fork() fails. The timeout is
+// below that of ctest, which would end the test without the text.
+ChildResult run_in_child(const ChildWork& work, std::chrono::milliseconds timeout = std::chrono::seconds(40));
 
 // Runs work whose text is a result. The running test fails if the work throws, or with an expectation in it.
 std::string run_for_text(const ChildWork& work);
 
 // Runs many jobs, at most `parallel` (1 or more) at a time, each with its own timeout. Returns the results in
-// the order of the jobs.
+// the order of the jobs. Once one has run out of time, no further ones begin.
 std::vector<ChildResult> run_in_children(const std::vector<ChildWork>& jobs, int parallel,
-                                         std::chrono::milliseconds timeout = std::chrono::seconds(60));
+                                         std::chrono::milliseconds timeout = std::chrono::seconds(40));
 
 }  // namespace stereotlm::test

@@ -25,7 +25,6 @@ import termios
 import time
 import unittest
 
-import tracked_files  # noqa: F401  watches what the script reads
 from pictures import noise, pgm
 
 PROGRAM = os.path.abspath(sys.argv.pop(1))

@@ -137,6 +137,12 @@ class Run(ReportTest):
             shown = self.file("shown.png", base64.b64decode(url))
             self.assertEqual(b"".join(map(bytes, read_png(shown)[3])), self.side(int(last.stem) % 4, "left"))
 
+    def test_shows_the_first_of_the_busiest_banks(self):
+        data = self.data(self.run_of("a", *PRELOADED))["run"]
+        busy = {bank["name"]: bank["busy_cycles"] for bank in data["stats"]["banks"]}
+        self.assertEqual([name for name in busy if busy[name] == max(busy.values())], ["bank6", "bank7"])
+        self.assertEqual(data["knobs"]["busiest_bank"]["name"], "bank6")
+
 
 class RecordedFiles(ReportTest):
     """Files of a run that are changed by one pattern each: where, and which value and rule are named."""

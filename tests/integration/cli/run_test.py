@@ -83,14 +83,6 @@ class Records(ProgramTest):
 
 
 class Output(ProgramTest):
-    def test_a_table_is_printed_and_nothing_on_standard_error(self):
-        process = self.run_small()
-        text = self.succeeds(process)
-        for word in ("core", "bound", "bank7", "waits"):
-            self.assertIn(word, text)
-        self.assertNotIn("SystemC", text)
-        self.assertEqual(process.stderr, "")
-
     def test_a_closed_pipe_does_not_cost_the_results(self):
         read_end, write_end = os.pipe()
         os.close(read_end)
@@ -112,19 +104,6 @@ class Output(ProgramTest):
         self.assertEqual(process.returncode, 1, "the table cannot be printed")
         with self.unchanged(self.out):
             self.succeeds(self.run_small("--out", self.out))
-
-
-class SaveFrames(ProgramTest):
-    def save(self, *more):
-        self.succeeds(self.run_small("--save-frames", "--out", self.out, *more))
-
-    def test_every_frame_is_saved(self):
-        self.save("--frames", "100")
-        self.is_in(self.out, *RESULT_FILES, "frames")
-        self.is_in(self.out / "frames", *frame_names(100))
-        last = (self.out / "disparity.png").read_bytes()
-        self.assertEqual(set(self.result(self.out / "frames").values()), {last})
-        self.assertEqual(read_png(self.out / "disparity.png")[:3], (WIDTH, HEIGHT, 1))
 
 
 class SavingInterrupted(ProgramTest):
@@ -155,13 +134,6 @@ class SavingInterrupted(ProgramTest):
         self.assertEqual(self.stats()["frames"], done)
         with self.unchanged(self.out):
             self.succeeds(self.run_small("--frames", done, "--save-frames", "--out", self.out))
-
-    def test_an_interrupt_leaves_out_the_truth_of_a_pair_that_was_not_reached(self):
-        errors = self.interrupt(self.begin("--sequence", self.sequence(1000), "--truth", self.left))
-        note = "note: --truth is of the pair of frame 999, which was not reached: no accuracy\n"
-        self.assertIn(note, errors)
-        self.assertNotIn("accuracy", self.stats())
-        self.assertNotIn("truth", self.run_json())
 
 
 class ProgressLine(ProgramTest):

@@ -287,7 +287,8 @@ class RandomComputers : public testing::TestWithParam<bool> {
     std::iota(seeds.begin(), seeds.end(), std::uint64_t{0});
     // Of computers that once showed an error which the first ones do not show: with steps of the matcher of
     // several cycles the end of a frame was noticed too late.
-    seeds.insert(seeds.end(), {819, 1126, 2616});
+    // The first alone shows some wrong changes.
+    seeds.insert(seeds.end(), {140, 819, 1126, 2616});
     std::vector<test::ChildWork> jobs;
     for (const std::uint64_t seed : seeds) jobs.push_back([&, seed] { return problems(seed, knobs); });
     const std::vector<test::ChildResult> results =

@@ -47,5 +47,34 @@ TEST(WaitlessCore, CountsFramesOfAnUnfinishedTurnOfTheLists) {
     EXPECT_DOUBLE_EQ(waitless_rate_of(board, frames), rate_of(board, frames)) << frames;
 }
 
+TEST(SteppedText, SaysWhatIsSimulatedCycleByCycle) {
+  const std::string pictures = "pictures in stripes or sdram, as their tables point to other pixels";
+  const std::string rows = "rows of sdram that hold the end of one buffer and the start of another";
+  const std::string captures = "accesses of captures and of the host in sdram";
+  struct Case {
+    const char* board;
+    const char* image;
+    bool camera;
+    bool is_identity;
+    std::string text;
+  };
+  // In sdram a picture of 160x64 is 40 rows of 64 words.
+  const std::vector<Case> cases = {
+      {"fpl2003", "{width: 160, height: 63}", true, false, ""},
+      {"eight-banks-four-lanes", "{width: 32, height: 24}", true, true, ""},
+      {"eight-banks-four-lanes", "{width: 32, height: 24}", true, false, pictures},
+      {"sdram", "{width: 160, height: 64}", false, true, ""},
+      {"sdram", "{width: 160, height: 64}", true, true, captures},
+      {"sdram", "{width: 160, height: 64}", false, false, pictures},
+      {"sdram", "{width: 160, height: 63}", false, true, rows},
+      {"sdram", "{width: 160, height: 63}", true, true, captures + "; " + rows}};
+  for (const auto& [name, image, camera, is_identity, text] : cases) {
+    const auto board = platform::load_board(name, {std::string("image=") + image});
+    platform::Tables tables = platform::identity_tables(board);
+    if (!is_identity) tables.left->entries[0] = kernels::make_entry(1, 0);
+    EXPECT_EQ(stepped_text(board, tables, camera), text) << name << ' ' << image;
+  }
+}
+
 }  // namespace
 }  // namespace stereotlm::runs

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <random>
 #include <stdexcept>
@@ -143,6 +144,11 @@ TEST(CameraModel, HasNoDirectionWhereTheLensFoldsThePicture) {
   folded.distortion = {-0.5, 0, 0, 0, 0};  // the farthest it sees: direction 0.8165, bent to 0.5443
   EXPECT_NEAR(folded.widest(), 0.8165, 1e-3);
   EXPECT_EQ(CameraModel().widest(), 10);
+  folded.distortion = {0, -0.5, 0, 0, 0};
+  EXPECT_NEAR(folded.widest(), std::pow(1 / 2.5, 1.0 / 4), 1e-3);
+  folded.distortion = {0, 0, 0, 0, -0.5};
+  EXPECT_NEAR(folded.widest(), std::pow(1 / 3.5, 1.0 / 6), 1e-3);
+  folded.distortion = {-0.5, 0, 0, 0, 0};
   EXPECT_NO_THROW(folded.direction({341 + 533 * 0.54, 234}));
   EXPECT_THROW(folded.direction({341 + 533 * 0.55, 234}), std::domain_error);
 }

@@ -51,11 +51,12 @@ TEST(RectificationTable, PointsInsideTheImageWhereItIsValid) {
   table.entries[1] = make_entry(7, 2);
   table.entries[2] = make_entry(8, 3) & ~kEntryValid;
   EXPECT_EQ(problems(table), Problems());
-  table.entries[1] = make_entry(8, 2);
-  table.entries[2] = make_entry(7, 3);
-  EXPECT_EQ(problems(table),
-            (Problems{"entry (1, 0) = 0x80020008: a valid source position must lie inside the 8 x 3 image",
-                      "entry (2, 0) = 0x80030007: a valid source position must lie inside the 8 x 3 image"}));
+  for (const auto& [entry, text] :
+       {std::pair(make_entry(8, 2), "0x80020008"), std::pair(make_entry(7, 3), "0x80030007")}) {
+    table.entries[1] = entry;
+    EXPECT_EQ(problems(table), Problems{std::string("entry (1, 0) = ") + text +
+                                        ": a valid source position must lie inside the 8 x 3 image"});
+  }
 }
 
 TEST(RectificationTable, HasASizeOf1To2048AndAnEntryForEachPixel) {

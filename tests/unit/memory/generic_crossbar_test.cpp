@@ -36,7 +36,6 @@ using sc_core::SC_NS;
 using sc_core::sc_time;
 using Words = std::vector<std::uint32_t>;
 
-constexpr std::uint64_t kCyclePs = 25'000;
 constexpr std::uint64_t kReport = 1;
 
 PriorityList list_of(std::size_t ports) {
@@ -274,7 +273,19 @@ std::ostream& operator<<(std::ostream& out, const Grant& grant) {
                             grant.write ? "write" : "read", grant.word);
 }
 
+// The edges of a clock, which are rounded to the nearest ps.
+struct Edges {
+  std::uint64_t khz;
+  std::uint64_t ps(std::uint64_t cycle) const { return (2'000'000'000 * cycle + khz) / (2 * khz); }
+  std::uint64_t at_or_after(std::uint64_t time_ps) const {
+    std::uint64_t cycle = time_ps * khz / 1'000'000'000;
+    while (ps(cycle) < time_ps) ++cycle;
+    return cycle;
+  }
+};
+
 struct Traffic {
+  Edges edges;
   CrossbarConfig config;
   std::vector<std::vector<Access>> accesses;  // [port]
 };
@@ -295,6 +306,7 @@ SdramTiming draw_sdram(test::SplitMix64& random) {
 Traffic draw(std::uint64_t seed) {
   test::SplitMix64 random(seed);
   Traffic traffic;
+  traffic.edges.khz = static_cast<std::uint64_t>(random.between(5'000, 1'000'000));
   const auto ports = static_cast<std::size_t>(random.between(1, 7));
   traffic.config.arbiter.policy = arbitration_policies()[seed % arbitration_policies().size()].name;
   traffic.config.arbiter.priority = list_of(ports);
@@ -305,6 +317,7 @@ Traffic draw(std::uint64_t seed) {
   for (int banks = random.between(1, 3); banks > 0; --banks) {
     SsramBankConfig bank;
     bank.words = 64;
+    bank.clock_mhz = static_cast<double>(traffic.edges.khz) / 1000;
     bank.kind = std::array{BankKind::kZbtPipelined, BankKind::kZbtFlowThrough, BankKind::kSyncBurst,
                            BankKind::kQdr, BankKind::kSdram}[static_cast<std::size_t>(random.between(0, 4))];
     if (bank.kind == BankKind::kSdram) bank.sdram = draw_sdram(random);
@@ -418,7 +431,7 @@ class PlainCrossbar {
     PortState& state = ports_[port];
     if (state.next == traffic_.accesses[port].size()) return;
     const std::uint64_t at_ps = end_ps + traffic_.accesses[port][state.next].pause_ps;
-    state.from_cycle = (at_ps + kCyclePs - 1) / kCyclePs;
+    state.from_cycle = traffic_.edges.at_or_after(at_ps);
   }
   void decide(std::size_t number, std::uint64_t cycle, bool writes, bool one_direction,
               std::vector<Grant>& all) {
@@ -455,7 +468,7 @@ class PlainCrossbar {
     if (++state.word < access.count) return;
     state.word = 0;
     ++state.next;
-    begin(winner, kCyclePs * (cycle + static_cast<std::uint64_t>(access.write ? 1 : bank.latency)));
+    begin(winner, traffic_.edges.ps(cycle + static_cast<std::uint64_t>(access.write ? 1 : bank.latency)));
   }
   Port winner_of(const Bank& bank, std::size_t direction, const std::vector<std::size_t>& asking) const {
     const PriorityList& list = traffic_.config.arbiter.priority;
@@ -483,7 +496,7 @@ class PlainCrossbar {
 
 class RandomTraffic : public ::testing::TestWithParam<std::uint64_t> {};
 
-// One crossbar for each process: SystemC elaborates once. Ports with even numbers use b_transport, the others
+// At clocks of 5 to 1,000 MHz. One crossbar for each process: SystemC elaborates once. Ports with even numbers use b_transport, the others
 // nb_transport.
 TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
   const Traffic traffic = draw(GetParam());
@@ -506,9 +519,10 @@ TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
   std::vector<Grant> found;
   for (std::size_t bank = 0; bank < traffic.config.banks.size(); ++bank) {
     for (const test::SeenAccess& one : bench.accesses(bank)) {
-      EXPECT_EQ(kernel_time::to_ps(one.begin) % kCyclePs, 0U);
-      found.push_back({kernel_time::to_ps(one.begin) / kCyclePs, bank, one.write,
-                       static_cast<std::uint32_t>(one.address / 4)});
+      const std::uint64_t begin_ps = kernel_time::to_ps(one.begin);
+      const std::uint64_t cycle = traffic.edges.at_or_after(begin_ps);
+      EXPECT_EQ(traffic.edges.ps(cycle), begin_ps);
+      found.push_back({cycle, bank, one.write, static_cast<std::uint32_t>(one.address / 4)});
     }
   }
   ASSERT_EQ(found.size(), expected.size());
@@ -525,7 +539,7 @@ TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
     counted += stats.reads() + stats.writes();
     EXPECT_EQ(stats.busy_cycles() + stats.turnaround_cycles() + stats.row_cycles() + stats.refresh_cycles() +
                   stats.idle_cycles(),
-              1'000'000'000 / kCyclePs);
+              traffic.edges.at_or_after(1'000'000'000));
   }
   EXPECT_EQ(counted, found.size());
   // Each other port is granted at most once before a word that waits.

@@ -11,6 +11,7 @@
 #include <string>
 #include <systemc>
 #include <thread>
+#include <vector>
 
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
@@ -75,6 +76,20 @@ TEST(RunInChild, GivesTheStatusAndTheTextOfEachEnding) {
     const ChildResult result = run_in_child(ending.work, std::chrono::milliseconds(500));
     EXPECT_EQ(result.exit_status, ending.exit_status);
     EXPECT_EQ(result.text, ending.text);
+  }
+}
+
+TEST(RunInChild, BeginsNoFurtherWorkOnceOneRanOutOfTime) {
+  const ChildWork endless = []() -> std::string {
+    while (true) std::this_thread::sleep_for(std::chrono::seconds(1));
+  };
+  const std::vector<ChildWork> jobs = {[] { return "a"; }, endless, [] { return "b"; }, endless};
+  const std::vector<ChildResult> results = run_in_children(jobs, 1, std::chrono::milliseconds(200));
+  EXPECT_EQ(results[0].text, "a");
+  EXPECT_EQ(results[1].text, "still running after 200 ms");
+  for (const std::size_t job : {2U, 3U}) {
+    EXPECT_EQ(results[job].exit_status, 124);
+    EXPECT_EQ(results[job].text, "not begun, because another ran out of time");
   }
 }
 

@@ -6,10 +6,12 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/sw/driver/fake_machine.h"
@@ -187,6 +189,68 @@ TEST(StereoDriver, UsesJustTheHostMemoryThatItAnnounces) {
     FakeMachine short_of_a_byte(host_memory_bytes(board) - 1);
     StereoDriver other(board, 8, &kLeftTable, &kRightTable, std::ref(listener));
     EXPECT_THROW(other.run(short_of_a_byte), std::out_of_range);
+  }
+}
+
+// Records the addresses of its writes, and the memory of the last chain of each DMA channel.
+class RecordingMachine : public FakeMachine {
+ public:
+  using FakeMachine::FakeMachine;
+  std::uint8_t* memory(std::uint64_t address, std::uint64_t bytes) override {
+    last_ = {address, address + bytes};
+    return FakeMachine::memory(address, bytes);
+  }
+  void write(std::uint64_t address, std::uint32_t value) override {
+    const std::uint64_t bridge = platform::DeviceMap{}.bridge_registers;
+    ++writes[address - bridge];
+    for (unsigned channel = 0; channel < 2; ++channel) {
+      const std::uint64_t registers = bridge + channel * pci::bridge::kChannelStride;
+      if (address == registers + pci::bridge::kDmaDescriptor) {
+        EXPECT_EQ(value, last_.first);
+        chains[channel] = last_;
+      }
+    }
+    FakeMachine::write(address, value);
+  }
+  std::map<std::uint64_t, int> writes;                              // [register of the bridge]
+  std::array<std::pair<std::uint64_t, std::uint64_t>, 2> chains{};  // [channel]: first byte, end
+
+ private:
+  std::pair<std::uint64_t, std::uint64_t> last_;
+};
+
+// Pictures of `height` rows of a word, in stripes over four banks, without tables.
+platform::BoardConfig striped(int height) {
+  platform::BoardConfig board;
+  board.image = {4, height};
+  const platform::BufferBanks stripe(std::vector<std::string>{"bank0", "bank1", "bank2", "bank3"});
+  board.allocation.left_image = board.allocation.right_image = board.allocation.disparity = {stripe, stripe};
+  board.allocation.left_lut = board.allocation.right_lut = std::nullopt;
+  return board;
+}
+
+TEST(StereoDriver, TheChainsOfBothDmaChannelsHaveMemoryOfTheirOwn) {
+  platform::BoardConfig board = striped(512);
+  board.capture.destination = platform::CaptureDestination::kHostMemory;
+  Listener listener;
+  RecordingMachine machine(host_memory_bytes(board));
+  StereoDriver(board, 3, nullptr, nullptr, std::ref(listener)).run(machine);
+  const auto [copy, read_back] = machine.chains;
+  EXPECT_EQ(copy.second - copy.first, 2 * 512 * 16U) << "a descriptor for each row of a pair";
+  EXPECT_EQ(read_back.second - read_back.first, 4 * 16U) << "one for each part of a result";
+  EXPECT_LE(copy.second, read_back.first);
+}
+
+TEST(StereoDriver, WritesThePagesOfPartsWithRowsAlone) {
+  for (const auto& [height, parts] : {std::pair(1, 1), std::pair(3, 3), std::pair(5, 4)}) {
+    Listener listener;
+    RecordingMachine machine;
+    StereoDriver(striped(height), 3, nullptr, nullptr, std::ref(listener)).run(machine);
+    const int captures = machine.writes[pci::bridge::kPage];
+    EXPECT_GE(captures, 3);
+    EXPECT_EQ(machine.writes[pci::bridge::kPage + 4], captures);
+    EXPECT_EQ(machine.writes[pci::bridge::kNextPage], (parts - 1) * captures) << height;
+    EXPECT_EQ(machine.writes[pci::bridge::kNextPage + 4], (parts - 1) * captures) << height;
   }
 }
 

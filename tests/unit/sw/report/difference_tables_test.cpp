@@ -28,10 +28,6 @@ std::string settings(const Values& a, const Values& b) {
   return settings_table("board", differing_values(a, b));
 }
 
-std::string figures(const Values& a, const Values& b) {
-  return figures_table("totals", differing_values(a, b));
-}
-
 // The words of each line with one space between them.
 std::string words(const std::string& text) {
   std::string words;
@@ -87,17 +83,6 @@ TEST(SettingsTable, CountsTheSettingsBeyondTheMost) {
   const std::string table = settings(a, {});
   EXPECT_EQ(lines_of(table), kMostSettings + 2);
   EXPECT_THAT(table, EndsWith("\n  1 more\n"));
-}
-
-TEST(FiguresTable, GivesTheDifferencesOfNumbers) {
-  const std::string a = "matcher";
-  const std::string b = "bank";
-  EXPECT_EQ(words(figures(
-                {integer("cycles", 100), {"rate", 18.5}, {"by", a}, integer("whole", 40), integer("same", 1)},
-                {integer("cycles", 250), {"rate", 9.25}, {"by", b}, {"whole", 40.5}, integer("same", 1)})),
-            "totals A B difference\ncycles 100 250 +150\nrate 18.5 9.25 -9.25\nby matcher bank\n"
-            "whole 40 40.5 +0.5\n");
-  EXPECT_EQ(figures({integer("same", 1)}, {integer("same", 1)}), "");
 }
 
 TEST(FramesTable, GroupsFramesWithTheSameCycles) {
@@ -187,24 +172,6 @@ TEST(BlameTable, IsSortedByTheDifference) {
             "left_lut on bank0 for host 10 15 +5\n");
   EXPECT_THAT(blame_table(differing_waits(b, a)), HasSubstr("-90\n"));
   EXPECT_EQ(blame_table(differing_waits(a, a)), "");
-}
-
-TEST(PixelsLine, CountsThePixelsThatDifferAndNamesTheFirst) {
-  stats::PixelComparison pixels;
-  EXPECT_EQ(pixels_line(pixels), "disparities: not compared: no camera frame is in both\n");
-  const kernels::GrayImage image(4, 2, 7);
-  kernels::GrayImage other = image;
-  pixels.add(0, image, image);
-  EXPECT_EQ(pixels_line(pixels), "disparities: the same, pixel for pixel, in 1 frame\n");
-  other.at(3, 0) = 6;
-  pixels.add(4, image, other);
-  const std::string first = "the first in frame 4 at (3, 0): 7 in A, 6 in B\n";
-  EXPECT_EQ(pixels_line(pixels), "disparities: 1 pixel differs, in 1 of 2 frames; " + first);
-  other.at(2, 0) = other.at(2, 1) = 255;
-  pixels.add(5, image, other);
-  pixels.add(6, image, image);
-  EXPECT_EQ(pixels_line(pixels), "disparities: 4 pixels differ, in 2 of 4 frames; " + first);
-  EXPECT_THROW(pixels.add(7, image, kernels::GrayImage(8, 1)), std::invalid_argument);
 }
 
 }  // namespace

@@ -225,6 +225,19 @@ TEST_F(PerfettoSinkTest, CountersHaveUseAndWaitsOfEachRowAndEndAtZero) {
   EXPECT_EQ(use.back(), std::pair(ns(frame.end_cycle), 0.0));
 }
 
+TEST_F(PerfettoSinkTest, TheLastStripHasTheNameOfItsRows) {
+  board_.matcher.rows = 4;  // of 6
+  platform::FrameRuns frame;
+  frame.strip_ends = {100, 200, 300};
+  for (std::uint64_t strip = 0; strip < 3; ++strip)
+    frame.runs.push_back({strip, 100 * strip, 100 * (strip + 1), 0, 0, std::nullopt, 4});
+  test::MadeTrace trace;
+  trace.frames = {frame};
+  std::set<std::string> names;
+  for (const PerfettoFile::Slice& slice : written(trace).slices) names.insert(slice.name);
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"fill", "rows 0..3", "rows 4..5"}));
+}
+
 TEST_F(PerfettoSinkTest, ABurstHasItsPhasesAndItsWait) {
   const PerfettoFile file = written(test::make_trace(board_, 1));
   const auto bursts = file.slices_of("pci");

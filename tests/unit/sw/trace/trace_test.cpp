@@ -154,17 +154,6 @@ TEST_F(TraceWindowTest, AroundTheLongestWaitHasTheSameCyclesInEachFormat) {
   }
 }
 
-TEST_F(TraceWindowTest, AroundTheLongestWaitIsEmptyIfNoPortWaits) {
-  TraceWindow window;
-  window.around_longest_wait = true;
-  const auto writer = this->writer(window);
-  testing::internal::CaptureStderr();
-  writer->cycle(cycle_of(7, {}));
-  finish(*writer);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "stereotlm: note: --trace-window: no port waits in it\n");
-  EXPECT_EQ(test::VcdFile(test::read_file(waveform_)).times(), std::vector<std::uint64_t>{0});
-}
-
 // Each format: what a trace with its second file leaves behind.
 class EachFormat : public ::testing::TestWithParam<std::size_t> {
  protected:
@@ -202,15 +191,6 @@ TEST_P(EachFormat, LeavesTheEarlierFilesWithoutACommitOrWhenTheDiskIsFull) {
   EXPECT_EQ(texts(), earlier);
   write(trace);
   EXPECT_NE(texts(), earlier);
-}
-
-TEST_P(EachFormat, RefusesAFolderThatIsNotThereAndAFileOfAnotherProgram) {
-  const std::string path = scratch_.path() / "none" / "file";
-  EXPECT_EQ(test::message_of([&] { format_.make_sink(path, board_); }),
-            "'" + path + "': there is no such folder");
-  test::write_file(path_, "of another program");
-  EXPECT_NE(test::message_of([&] { format_.make_sink(path_, board_); }).find("is not known as a"),
-            std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Traces, EachFormat, ::testing::Range<std::size_t>(0, std::size(kTraceFormats)),

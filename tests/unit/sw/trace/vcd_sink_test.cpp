@@ -274,6 +274,18 @@ TEST_F(VcdSinkTest, BeginsAndEndsWithTheWindow) {
   }
 }
 
+TEST_F(VcdSinkTest, HasTheChangesAtTheEndOfTheWindow) {
+  const test::MadeTrace trace = test::make_trace(board_, 1);
+  const VcdFile whole = written(trace);
+  const std::string signal = "left_lut.state";
+  const auto change = std::next(whole.changes(signal).begin(), 20);
+  path_ = scratch_.path() / "window.vcd";
+  const VcdFile window = written(trace, {ps(1), change->first, std::nullopt});
+  EXPECT_EQ(window.times().back(), change->first);
+  for (const auto& [name, code] : whole.signals())
+    EXPECT_EQ(window.at(name, change->first), whole.at(name, change->first)) << name;
+}
+
 TEST_F(VcdSinkTest, RefusesFstWithoutItsProgram) {
   const std::string before = std::getenv("PATH");
   setenv("PATH", scratch_.path().c_str(), 1);

@@ -190,7 +190,13 @@ struct Expected {
     }
     return tied;
   }
-  void take(double rate) { rates.push_back({rate, rate, rate}); }
+  void take(double rate, const Placement& placement) {
+    if (rate > highest) witness = placement;
+    highest = std::max(highest, rate);
+    rates.push_back({rate, rate, rate});
+  }
+  double highest = 0;
+  Placement witness;  // the first with the highest rate
 };
 
 void expect_best(const BestPlacement& best, const Expected& expected) {
@@ -218,7 +224,7 @@ TEST(AllocationSearch, ByFramesFindsTheBestPlacementsWithoutFailedFrames) {
     if (allocation_text(frames[0]) == failing || allocation_text(frames[1]) == failing) {
       ++of_banks.failed;
     } else {
-      of_banks.take(40e6 * 2 / static_cast<double>(cycles_of(frames[0]) + cycles_of(frames[1])));
+      of_banks.take(40e6 * 2 / static_cast<double>(cycles_of(frames[0]) + cycles_of(frames[1])), placement);
     }
   }
   for (const std::size_t number : search.next()) {
@@ -234,6 +240,7 @@ TEST(AllocationSearch, ByFramesFindsTheBestPlacementsWithoutFailedFrames) {
   ASSERT_EQ(all.size(), expected.size());
   for (const BestPlacement& best : all) {
     expect_best(best, expected[best.banks]);
+    EXPECT_EQ(best.witness, expected[best.banks].witness);
     EXPECT_EQ(best.failed, expected[best.banks].failed);
     EXPECT_EQ(best.known, best.placements);
     EXPECT_EQ(best.outcome.frames_per_second, 40e6 * 2 / static_cast<double>(best.outcome.cycles));

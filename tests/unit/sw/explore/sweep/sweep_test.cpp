@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -222,13 +223,18 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
     const auto dies = [&](const Point& point) {
       const bool is_first = !fs::exists(file("died"));
       if (is_first) write_file(file("died"), "");
-      if (is_first || point.board->matcher.window == 9) death.die();
+      if (is_first || point.board->matcher.window == 9) {
+        std::ofstream(file("deaths"), std::ios::app) << "x";
+        death.die();
+      }
       return evaluate(point);
     };
-    for (const char* const name : {"died", "a.db"}) fs::remove(file(name));
+    for (const char* const name : {"died", "deaths", "a.db"}) fs::remove(file(name));
     const SweepCounts counts = sweep(plan().points(), dies, options("a.db", death.jobs), always);
     EXPECT_EQ(counts.done(), kPoints);
     EXPECT_EQ(counts.ok, kOk - kOkOfAWindow) << death.text;
+    EXPECT_GE(fs::file_size(file("deaths")), 3 * kOkOfAWindow) << death.text;
+    EXPECT_LE(fs::file_size(file("deaths")), 3 * kOkOfAWindow + 1) << death.text;
     EXPECT_EQ(counts.failed, 2 * kOkOfAWindow) << death.text;
     const std::string failed = "status = 'failed' AND \"matcher.window\" = 9 AND reason = 'its process has " +
                                death.text +
