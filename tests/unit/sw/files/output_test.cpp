@@ -59,7 +59,7 @@ class OutputTest : public testing::Test {
     content.kept = "kept";
     return content;
   }
-  std::unique_ptr<OutputFolder> open(OutputContent described = content()) const {
+  std::unique_ptr<OutputFolder> open(const OutputContent& described = content()) const {
     return std::make_unique<OutputFolder>(out_, described);
   }
   std::string folder_refusal(const OutputContent& described = content()) const {
