@@ -33,11 +33,16 @@ const FileKind kKind = marked_kind("note of this test", {{0, "own"}, {4, ":"}});
 class OutputTest : public testing::Test {
  protected:
   std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(scratch_.path()))
-      names.push_back(entry.path().lexically_relative(scratch_.path()));
-    std::sort(names.begin(), names.end());
-    return names;
+    for (;;) {
+      try {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::recursive_directory_iterator(scratch_.path()))
+          names.push_back(entry.path().lexically_relative(scratch_.path()));
+        std::sort(names.begin(), names.end());
+        return names;
+      } catch (const fs::filesystem_error&) {  // what a killed process has left is just removed
+      }
+    }
   }
   static void replace(const fs::path& path, const std::string& bytes) {
     OutputFile file(path, kKind);
