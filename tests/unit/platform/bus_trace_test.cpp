@@ -67,6 +67,20 @@ TEST_F(BusTraceTest, RefusesRowsOfNoFrame) {
   EXPECT_NO_THROW(trace(window));
 }
 
+// Cycles 4 and 5, of 25 ns.
+TEST_F(BusTraceTest, HasTheBurstsThatAreUnderWayInItsCycles) {
+  fpga::CycleWindow window;
+  window.first = 4;
+  window.last = 5;
+  trace(window);
+  pci(1, 100'000);
+  pci(2, 100'001);
+  pci(149'999, 160'000);
+  pci(150'000, 170'000);
+  EXPECT_EQ(handed_out(), (Lines{"host>host_memory w1 at 100: 2 2 3 100001",
+                                 "host>host_memory w1 at 100: 149999 149999 150000 160000"}));
+}
+
 // No run is as long.
 TEST_F(BusTraceTest, IsEmptyInCyclesThatNoRunReaches) {
   fpga::CycleWindow window;
