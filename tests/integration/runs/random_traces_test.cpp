@@ -350,7 +350,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   test::ProbingBinder binder("crossbar");
   PicturesOfCase pictures(of);
   const std::unique_ptr<runs::Simulation> simulation = runs::make_simulation(
-      of.board, of.tables, pictures, {of.computer.has_value(), fidelity, of.frames, true}, binder);
+      of.board, of.tables, pictures, {of.computer.has_value(), fidelity, of.frames, runs::kAllFrames}, binder);
   const test::ScratchFolder scratch;
   std::vector<trace::TraceFile> files;
   std::map<std::string, std::string> paths;  // by format
