@@ -34,7 +34,9 @@ void FastBoard::step(std::uint64_t now_ps) {
 }
 
 void FastBoard::catch_up(std::uint64_t now_ps) {
-  if (frames_.is_running()) frames_.run_ahead(clock_.edge_at_or_after(now_ps));
+  if (!frames_.is_running()) return;
+  frames_.run_ahead(clock_.edge_at_or_after(now_ps));
+  host_port_.count_words();
 }
 
 bool FastBoard::access_bank(std::uint64_t /*at_ps*/, bool write, std::uint64_t address, std::uint32_t& word) {

@@ -145,18 +145,6 @@ void AccessPattern::set_slots() const {
       }
     }
   }
-  changes_.clear();
-  for (std::uint64_t first = slots_of_group(); first < geometry_.slots; first += 64) {
-    std::uint64_t differing = pixels_of_slots(first) ^ pixels_of_slots(first - slots_of_group());
-    for (; differing != 0; differing &= differing - 1)
-      changes_.push_back(first + static_cast<std::uint64_t>(__builtin_ctzll(differing)));
-  }
-}
-
-std::uint64_t AccessPattern::uniform_until(std::uint64_t slot) const {
-  if (slots_.empty()) set_slots();
-  const auto change = std::lower_bound(changes_.begin(), changes_.end(), slot + slots_of_group());
-  return change == changes_.end() ? geometry_.slots : std::min(*change, geometry_.slots);
 }
 
 const AccessPattern::RowAccesses& AccessPattern::table_accesses_of_rows() const {

@@ -31,16 +31,10 @@ class AccessPattern {
     const auto place = static_cast<std::size_t>(column);
     return (pixels_of_row(row)[place / 64] >> place % 64 & 1U) != 0;
   }
-  // The slots of four columns.
-  std::uint64_t slots_of_group() const { return 4 * static_cast<std::uint64_t>(geometry_.slots_per_column); }
   // Whether every slot inside the image accesses it.
   bool needs_all_pixels() const { return needs_all_pixels_; }
   // Whether every pixel is its own source.
   bool is_identity() const { return is_identity_; }
-  // The first slot, at least four columns after `slot`, that differs from the slot four columns before it:
-  // only one of the two accesses its pixel. If there is none, the number of slots. (With a word cache the
-  // accesses repeat every four columns at best.)
-  std::uint64_t uniform_until(std::uint64_t slot) const;
   // Whether slots access their pixels: bit i for slot `slot` + i of the frame, for 64 slots. 0 beyond the
   // end of the frame. `slot` is at most 256 slots beyond it.
   std::uint64_t pixels_of_slots(std::uint64_t slot) const {
@@ -83,13 +77,12 @@ class AccessPattern {
   std::vector<std::uint64_t> counts_;  // [row]: their number
   bool needs_all_pixels_ = false;
   bool is_identity_ = true;
-  // These four are empty until the first query: few frames need them.
-  mutable std::vector<std::uint64_t> slots_;    // bit i of the sequence: slot i accesses its pixel
-  mutable std::vector<std::uint64_t> changes_;  // the slots that differ from the one four columns before
-  mutable RowAccesses entries_of_rows_;         // table_accesses_of_rows()
-  mutable RowAccesses pixels_of_rows_;          // pixel_accesses_of_rows()
-  std::vector<std::uint64_t> table_accesses_;   // [lane]
-  std::vector<std::uint64_t> pixel_accesses_;   // [lane]
+  // These three are empty until the first query: few frames need them.
+  mutable std::vector<std::uint64_t> slots_;   // bit i of the sequence: slot i accesses its pixel
+  mutable RowAccesses entries_of_rows_;        // table_accesses_of_rows()
+  mutable RowAccesses pixels_of_rows_;         // pixel_accesses_of_rows()
+  std::vector<std::uint64_t> table_accesses_;  // [lane]
+  std::vector<std::uint64_t> pixel_accesses_;  // [lane]
 };
 
 using AccessPatterns = std::array<AccessPattern, 2>;  // [side]

@@ -31,7 +31,6 @@ void CoreControl::skip_waiting(std::uint64_t cycles) {
   const Decision decision = decide();
   for (std::size_t port = 0; port < ports_.core_size(); ++port)
     cycles_[port].add(decision.intents[port], false, cycles);
-  count_host(false, false, cycles);
   match_.skip_folds(cycles);
 }
 
@@ -48,16 +47,16 @@ void CoreControl::add(const Counts& counts, std::uint64_t times) {
   for (std::size_t port = 0; port < counts.size(); ++port) cycles_[port].add(counts[port], times);
 }
 
-void CoreControl::skip_to(memory::StateReader& state, std::uint64_t consumed, std::uint64_t words) {
+void CoreControl::set_state(memory::StateReader& state, std::uint64_t consumed, std::uint64_t words) {
   const std::uint64_t before = match_.consumed();
-  const std::uint64_t after = before + (match_.draining() ? 0 : consumed);
+  const std::uint64_t after = std::max(before, std::min(before + consumed, geometry_.consume_cycles));
   for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
     const auto number = static_cast<int>(lane % ports_.lanes());
-    lanes_[lane].skip_to(*state++,
-                         geometry_.consumed_slots(number, after) - geometry_.consumed_slots(number, before));
+    lanes_[lane].set_state(
+        *state++, geometry_.consumed_slots(number, after) - geometry_.consumed_slots(number, before));
   }
-  match_.skip_to(*state & 0xffff'ffffU, consumed);
-  result_.skip_to(*state++ >> kHalf, words);
+  match_.set_state(*state & 0xffff'ffffU, consumed);
+  result_.set_state(*state++ >> kHalf, words);
 }
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, const Unknown& before) const {

@@ -54,7 +54,7 @@ class CoreControl {
   // core requests or passes, and the matcher works on a slot without consuming it.
   std::uint64_t waiting_cycles() const {
     const std::uint64_t cycles = match_.cycles_to_consume();
-    if (cycles == 0 || !std::all_of(lanes_.begin(), lanes_.end(), std::mem_fn(&LaneControl::is_settled)))
+    if (cycles == 0 || !std::all_of(lanes_.begin(), lanes_.end(), std::mem_fn(&LaneControl::has_all)))
       return 0;
     const Decision decision = decide();
     return decision.requests == 0 && decision.passes == 0 ? cycles : 0;
@@ -62,18 +62,12 @@ class CoreControl {
   // Skips `cycles` of these cycles. The host must not request in them.
   void skip_waiting(std::uint64_t cycles);
 
-  // Counts cycles of the host port, which commit() does not count.
-  void count_host(bool requested, bool granted, std::uint64_t cycles = 1) {
-    host_cycles().add(requested ? Intent::kRequest : Intent::kIdle, granted, cycles);
-  }
-  // Counts cycles in which the host requested an uncontended bank. Corrects the frame's own count of them as
-  // idle, which may come before or after this call.
-  void host_was_busy(bool granted, std::uint64_t cycles) {
-    host_cycles().subtract(Intent::kIdle, false, cycles);
-    host_cycles().add(Intent::kRequest, granted, cycles);
+  // Counts cycles of the frame in which the host port requested, which commit() does not count.
+  void count_host(bool granted, std::uint64_t cycles = 1) {
+    cycles_.back().add(Intent::kRequest, granted, cycles);
   }
   // See LaneControl.
-  void correct_marks(std::size_t lane, std::uint64_t marks) { lanes_[lane].correct_marks(marks); }
+  void set_marks(std::size_t lane, std::uint64_t marks) { lanes_[lane].set_marks(marks); }
 
   // The state that determines the next cycles, together with the arbiters' state and the slots that the pixel
   // ports have not handled.
@@ -82,9 +76,8 @@ class CoreControl {
     state.push_back(match_.state() | result_.state() << kHalf);
   }
   // Skips cycles, after which the core is in `state`. In them `consumed` consume-cycles end, and `words`
-  // words of results are written. `consumed` is at most MatchControl::uniform_cycles(). The caller then calls
-  // correct_marks().
-  void skip_to(memory::StateReader& state, std::uint64_t consumed, std::uint64_t words);
+  // words of results are written. The caller then calls set_marks().
+  void set_state(memory::StateReader& state, std::uint64_t consumed, std::uint64_t words);
   // [port]: cycles of the core's own ports, over all frames.
   using Counts = std::vector<PortCycles>;
   Counts counts() const;
@@ -119,7 +112,12 @@ class CoreControl {
   // run; `before` are cycles before it.
   std::uint64_t earliest_last_write(std::uint64_t cycle, const Unknown& before) const;
   // The cycles of a port, from the start of each frame to its last write, over all frames.
-  const PortCycles& port_cycles(memory::Port port) const { return cycles_[port]; }
+  PortCycles port_cycles(memory::Port port) const {
+    PortCycles cycles = cycles_[port];
+    // The host is idle in all cycles of the frame in which it does not request.
+    if (port == ports_.host()) cycles.add(Intent::kIdle, false, cycles_.front().sum() - cycles.sum());
+    return cycles;
+  }
   // Cycles in which the matcher worked plus words written, over all frames. The sum grows as long as frames
   // make progress.
   std::uint64_t work() const { return match_.worked() + port_cycles(ports_.result()).granted(); }
@@ -132,7 +130,6 @@ class CoreControl {
   Decision decide_lanes() const;
   template <std::size_t kLanes>
   bool commit_lanes(const Decision& decision, memory::PortMask granted, PixelNeeds needs_pixel);
-  PortCycles& host_cycles() { return cycles_.back(); }
   // Whether the matcher can consume the slots of its next consume-cycle.
   bool slots_ready() const {
     const auto lanes = static_cast<std::size_t>(match_.lanes());
@@ -148,7 +145,7 @@ class CoreControl {
   std::vector<LaneControl> lanes_;  // see lanes()
   MatchControl match_;
   ResultControl result_;
-  std::vector<PortCycles> cycles_;  // [port]
+  std::vector<PortCycles> cycles_;  // [port]; the host's without idle cycles
 };
 
 // `kLanes`: the number of lanes of both sides, or 0 if it is not known when this is compiled. With 2, the

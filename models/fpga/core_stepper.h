@@ -43,10 +43,10 @@ class CoreStepper {
     const PortMask granted = arbitration_.arbitrate(cycle, requests);
     if (cycles_ != nullptr) cycles_->step(cycle, decision, host_requests, granted, control_, arbitration_);
     completed_group_ = control_.commit(decision, granted, move(decision, granted));
-    control_.count_host(host_requests, (granted & host) != 0);
+    if (host_requests) control_.count_host((granted & host) != 0);
     if (control_.result().words_written() == rows_.next_words()) rows_.note(cycle, control_);
     if (conflicts_ != nullptr) {
-      if (requests != granted || (granted & host) != 0) conflicts_->step(requests, granted);
+      conflicts_->step(requests, granted, arbitration_);
       if (completed_group_) conflicts_->end_group(cycle + 1);
     }
     return granted;
@@ -64,6 +64,7 @@ class CoreStepper {
     cycles_ = cycles;
   }
   ConflictRecorder* conflicts() const { return conflicts_; }
+  CycleRecorder* cycles() const { return cycles_; }
   const Placements& placements() const { return *placements_; }  // of the running frame
   memory::Arbitration& arbitration() { return arbitration_; }
   const memory::Arbitration& arbitration() const { return arbitration_; }

@@ -70,7 +70,6 @@ bool FrameRun::has_banks(const FrameBases& bases) const {
 void FrameRun::start_stepped(std::uint64_t cycle, const FrameBases& bases) {
   patterns_ = nullptr;
   begin(cycle, bases);
-  core_.start_stepped_frame();
 }
 
 void FrameRun::start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns) {
@@ -89,26 +88,10 @@ void FrameRun::begin(std::uint64_t cycle, const FrameBases& bases) {
   placements_ = placements_of(config_, bases);
   core_.start_frame(route_ports(), placements_);
   core_.arbitration().begin_counting(first_cycle_);
-  is_settled_ = false;
   const bool is_recorded =
-      conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, control(), core_.arbitration());
+      conflicts_ != nullptr && conflicts_->start_frame(first_cycle_, core_.arbitration());
   if (cycles_ != nullptr && is_recorded) cycles_->start_frame(frame_cycles_.size(), first_cycle_, bases);
   core_.record(is_recorded ? conflicts_ : nullptr, is_recorded ? cycles_ : nullptr);
-}
-
-// As run_ahead(), but steps the cycles that CycleRecorder needs.
-void FrameRun::run_ahead_recorded(std::uint64_t end) {
-  while (cycle_ < end && !control().frame_done()) {
-    const std::uint64_t stepped = core_.conflicts() != nullptr ? cycles_->next_stepped(cycle_) : UINT64_MAX;
-    if (stepped != cycle_) {
-      cycle_ = core_.run_ahead(cycle_, std::min(end, stepped));
-      is_settled_ = false;
-      continue;
-    }
-    if (!is_settled_) core_.settle(cycle_);
-    is_settled_ = true;
-    step(false);
-  }
 }
 
 FrameLatencies FrameRun::route_ports() {
@@ -135,7 +118,7 @@ std::uint64_t FrameRun::stalled_cycles() {
 void FrameRun::finish() {
   state_ = State::kFinishing;
   done_cycle_ = cycle_ + static_cast<std::uint64_t>(config_.pipeline_latency_cycles);
-  core_.settle(cycle_);
+  if (patterns_ != nullptr) core_.end_direct_frame(cycle_);
   core_.arbitration().end_counting(cycle_);
   if (patterns_ != nullptr) count_direct();
   if (core_.conflicts() == nullptr) return;

@@ -63,9 +63,9 @@ class FrameRun {
   int read_latency_cycles(std::size_t bank) const { return latencies_[bank]; }
 
   // Starts a frame in `cycle`, or in cycle() if that is later. The banks of the bases must exist. The caller
-  // calls step() with `move` for each cycle.
+  // calls step() for each cycle.
   void start_stepped(std::uint64_t cycle, const FrameBases& bases);
-  // Starts a frame that works directly on memory. The caller calls run_ahead(), or step() without `move`.
+  // Starts a frame that works directly on memory. The caller calls run_ahead().
   // `patterns`: the accesses of the slots; they must outlive the frame.
   void start_direct(std::uint64_t cycle, const FrameBases& bases, const AccessPatterns& patterns);
 
@@ -74,28 +74,16 @@ class FrameRun {
   memory::PortMask step(bool host_requests, const Move& move, const Entry& entry) {
     return core_.step(cycle_++, host_requests, move, entry);
   }
-  // Runs cycle() of a direct frame.
-  memory::PortMask step(bool host_requests) { return core_.step(cycle_++, host_requests); }
   // Runs the cycles of a direct frame up to `end`, `end` not included, or until the frame is done.
-  void run_ahead(std::uint64_t end) {
-    if (cycles_ == nullptr) {
-      cycle_ = core_.run_ahead(cycle_, end);
-    } else {
-      run_ahead_recorded(end);
-    }
-  }
+  void run_ahead(std::uint64_t end) { cycle_ = core_.run_ahead(cycle_, end); }
   // As run_ahead(), but steps no cycle: it stops before `end` where a cycle must be stepped.
-  void skip_ahead(std::uint64_t end) {
-    if (cycles_ == nullptr) cycle_ = core_.skip_ahead(cycle_, end);
-  }
+  void skip_ahead(std::uint64_t end) { cycle_ = core_.skip_ahead(cycle_, end); }
   // Makes `cycle` the next cycle to run. To be called only while no frame runs.
-  void skip_to(std::uint64_t cycle) { cycle_ = cycle; }
+  void set_cycle(std::uint64_t cycle) { cycle_ = cycle; }
   // Serves words of the host in a direct frame, see FastForward.
   FastForward::Served serve_host(const FastForward::Route& route, std::uint64_t first, std::size_t words) {
     return core_.serve_host(cycle_, route, first, words);
   }
-  // To be called before the route of the host changes.
-  void host_route_changes() { core_.settle(cycle_); }
   // To be called when control().frame_done() becomes true.
   void finish();
   // To be called in done_cycle().
@@ -109,7 +97,8 @@ class FrameRun {
   std::uint64_t first_cycle() const { return first_cycle_; }
   // The first cycle after the frame that was finished last.
   std::uint64_t done_cycle() const { return done_cycle_; }
-  // After serve_host() its state and counts may be those of an earlier cycle, until another call runs cycles.
+  // After serve_host() and skip_ahead() its state and counts may be those of an earlier cycle, until
+  // run_ahead() is called.
   CoreControl& control() { return core_.control(); }
   const CoreControl& control() const { return core_.control(); }
   // A lower bound of the cycle in which the last write of the frame is granted.
@@ -152,17 +141,12 @@ class FrameRun {
     cycles.set_host(host_);
   }
   CycleRecorder* cycles() { return cycles_; }
-  // Whether a cycle of the running frame before `end` must be stepped.
-  bool must_step_before(std::uint64_t end) const {
-    return cycles_ != nullptr && cycles_->next_stepped(cycle_) < end;
-  }
 
  private:
   enum class State { kIdle, kRunning, kFinishing };
 
   FrameLatencies route_ports();
   void begin(std::uint64_t cycle, const FrameBases& bases);
-  void run_ahead_recorded(std::uint64_t end);
   void count_direct();
   std::uint64_t all_writes() const { return control().port_cycles(control().ports().result()).granted(); }
 
@@ -184,7 +168,6 @@ class FrameRun {
   NextHostWord host_;  // empty: nothing uses the host port
   ConflictRecorder* conflicts_ = nullptr;
   CycleRecorder* cycles_ = nullptr;
-  bool is_settled_ = false;          // run_ahead_recorded() has settled core_
   std::uint64_t writes_before_ = 0;  // words written before the frame that was started last
   std::vector<std::uint64_t> frame_cycles_;
   std::vector<RowProfile> row_profiles_;  // not yet taken

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "models/memory/memory_config.h"
 
@@ -17,10 +18,8 @@ void HostPort::route(const HostRoute& route) {
   is_moved_ = false;
   if (route.bank) {
     read_latency_cycles_ = frames_.read_latency_cycles(*route.bank);
-  } else if (is_joined_) {
-    is_joined_ = false;
-    frames_.host_route_changes();
-    arbitration_.unroute(port_);
+  } else {
+    leave();
   }
 }
 
@@ -28,8 +27,11 @@ void HostPort::join() {
   if (!burst_.bank || is_joined_) return;
   is_joined_ = true;
   if (ConflictRecorder* const conflicts = frames_.conflicts()) conflicts->set_host_traffic(traffic());
-  frames_.host_route_changes();
   arbitration_.route(port_, *burst_.bank, burst_.write);
+}
+
+void HostPort::leave() {
+  if (std::exchange(is_joined_, false)) arbitration_.unroute(port_);
 }
 
 bool HostPort::access(std::uint64_t cycle, std::uint64_t edge_ps) {
@@ -42,39 +44,18 @@ std::optional<HostWord> HostPort::next_word() const {
   return HostWord{*burst_.bank, words_left().first - memory::crossbar_address(*burst_.bank, 0), traffic()};
 }
 
-bool HostPort::is_contended() const { return is_contended(*burst_.bank); }
-
-bool HostPort::is_contended(std::size_t bank) const {
-  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(port_, bank));
+bool HostPort::is_contended() const {
+  return frames_.is_running() && (!is_only_master_ || arbitration_.is_used_beside(port_, *burst_.bank));
 }
 
 void HostPort::serve_contended() {
-  const std::uint64_t first = clock_.edge_at_or_after(bus_.request_ps());
   move_burst();
-  if (is_joined_ || !is_moved_ || !is_in_step_ ||
-      frames_.must_step_before(std::max(frames_.cycle(), first) + FastForward::kMostHostCycles)) {
-    step_contended(first);
-    return;
-  }
+  // In step with the core, each word requests in the cycle after a grant.
+  const bool is_whole = is_moved_ && is_in_step_ && frames_.cycles() == nullptr;
   const FastForward::Served served =
-      frames_.serve_host({*burst_.bank, burst_.write, traffic(), first_word()}, first, bus_.words_left());
-  if (served.words != 0)
-    bus_.count_granted(served.words, clock_.edge_ps(served.last_cycle), usable_ps(served.last_cycle));
-}
-
-// Runs the frame to `first_cycle`, and then steps it.
-void HostPort::step_contended(std::uint64_t first_cycle) {
-  frames_.run_ahead(first_cycle);  // before join(): the route of the host prevents skipping
-  join();
-  const std::uint64_t end = frames_.cycle() + FastForward::kMostHostCycles;
-  while (frames_.cycle() < end && !frames_.control().frame_done() && bus_.word_waits()) {
-    const std::uint64_t cycle = frames_.cycle();
-    const std::uint64_t edge_ps = clock_.edge_ps(cycle);
-    const bool requests = bus_.requests(edge_ps);
-    if (requests) place();
-    const memory::PortMask granted = frames_.step(requests);
-    if (memory::has(granted, port_)) serve_word(cycle, edge_ps);
-  }
+      frames_.serve_host({*burst_.bank, burst_.write, traffic(), first_word()},
+                         clock_.edge_at_or_after(bus_.request_ps()), is_whole ? bus_.words_left() : 1);
+  if (served.words != 0) serve_words(served.words, served.last_cycle);
 }
 
 void HostPort::serve_new_burst() {
@@ -107,7 +88,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
     const memory::BankArbiter::Outcome outcome = decide(bank, cycle, burst_.write);
     served_.push_back({cycle, 1, outcome});
     record_served(cycle, 1, grants(outcome), outcome.cause);
-    if (grants(outcome)) serve_word(cycle, edge_ps);
+    if (grants(outcome)) serve_words(1, cycle);
     ++cycle;
   }
   if (!frames_.is_running()) count_words_outside();
@@ -135,13 +116,14 @@ void HostPort::move_burst() {
   is_moved_ = true;
 }
 
-// The waiting word is granted in `cycle`.
-void HostPort::serve_word(std::uint64_t cycle, std::uint64_t edge_ps) {
+// These words are granted, the last of them in `last_cycle`. Only words that are moved may be more than one.
+void HostPort::serve_words(std::size_t words, std::uint64_t last_cycle) {
+  const std::uint64_t edge_ps = clock_.edge_ps(last_cycle);
   if (is_moved_) {
-    bus_.count_granted(1, edge_ps, usable_ps(cycle));
+    bus_.count_granted(words, edge_ps, usable_ps(last_cycle));
   } else {
     banks_.allow_access(port_);
-    access(cycle, edge_ps);
+    access(last_cycle, edge_ps);
   }
 }
 
@@ -153,8 +135,7 @@ void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::size_t words = bus_.words_left();
   served_.push_back({first, words, decide(*burst_.bank, first, burst_.write)});
   record_served(first, words, true, 0);
-  const std::uint64_t last = first + words - 1;
-  bus_.count_granted(words, clock_.edge_ps(last), usable_ps(last));
+  serve_words(words, first + words - 1);
 }
 
 // What the burst is for; without meaning unless conflicts are recorded.
@@ -165,7 +146,7 @@ HostTraffic HostPort::traffic() const {
 
 void HostPort::count(const Served& served, bool in_frame) {
   arbitration_.arbiter(served_bank_).count(served.outcome, served.cycles);
-  if (in_frame) frames_.control().host_was_busy(grants(served.outcome), served.cycles);
+  if (in_frame) frames_.control().count_host(grants(served.outcome), served.cycles);
 }
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
@@ -175,7 +156,7 @@ void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
     count({next->cycle, cycles, next->outcome}, in_frame);
     if (conflicts != nullptr) {
-      conflicts->add_served(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome),
+      conflicts->hear_apart(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome),
                             next->outcome.cause);
     }
     next->cycle += cycles;

@@ -16,9 +16,9 @@ namespace stereotlm::fpga {
 // The host port of the banks: serves the bursts of the local bus, beside the frames of the core. It never
 // waits; whoever runs the core calls it.
 //
-// A burst is contended if it goes to a bank of the running frame: then each word is arbitrated in its cycle.
-// An uncontended burst is served independently of the frame. Its words are counted later, when it is known
-// whether their cycles belong to the frame. Plain C++.
+// A burst has two roads into its bank. It is contended if it goes to a bank of the running frame: then each
+// word is arbitrated in its cycle. An uncontended burst is served independently of the frame, and ahead of
+// it. Its words are counted when the frame has come to their cycles. Plain C++.
 class HostPort {
  public:
   // All of these outlive this object.
@@ -49,8 +49,10 @@ class HostPort {
   void place() {
     if (memory::has(arbitration_.placed(), port_)) arbitration_.place(port_, *burst_.bank, first_word());
   }
-  // Lets the burst take part in the arbitration of its bank from now on.
+  // For a frame that is stepped: lets the burst take part in the arbitration of its bank from now on.
   void join();
+  // Ends that.
+  void leave();
   // Transfers the waiting word, which has been granted in `cycle`, which begins at `edge_ps`. Returns true if
   // the burst has ended.
   bool access(std::uint64_t cycle, std::uint64_t edge_ps);
@@ -58,9 +60,8 @@ class HostPort {
   // Whether the burst goes to a bank of the running frame, or another master of the registers may start the
   // next frame as soon as this one ends.
   bool is_contended() const;
-  bool is_contended(std::size_t bank) const;  // the same for any bank
-  // Runs the frame and serves the words of the burst until the burst or the frame ends, but for at most
-  // FastForward::kMostHostCycles after the waiting word requests.
+  // Runs the frame and serves words of the burst, at least the waiting one unless the frame ends, or the word
+  // waits for more than FastForward::kMostHostCycles.
   void serve_contended();
   // Serves the words of an uncontended burst, early if possible: but from `horizon_ps` on, another master of
   // the registers could start a frame on its bank. Returns the time of the next call, in ps. If it is the end
@@ -75,10 +76,14 @@ class HostPort {
   // Serves an uncontended burst that has just begun, if no frame can start within it.
   void serve_new_burst();
 
+  // Counts the words of the running frame up to the next cycle that it runs.
+  void count_words() {
+    if (frames_.is_running()) count_served(frames_.cycle(), true);
+  }
   // Finishes the frame, after the cycle in which its last write was granted. Words served before the frame's
   // cycle() belong to it, later ones do not.
   void finish_frame() {
-    count_served(frames_.cycle(), true);
+    count_words();
     frames_.finish();
     count_words_outside();
   }
@@ -101,8 +106,7 @@ class HostPort {
       frames_.cycles()->host_accesses(*next_word(), cycle, cycles, granted, cause);
   }
   void move_burst();
-  void step_contended(std::uint64_t first_cycle);
-  void serve_word(std::uint64_t cycle, std::uint64_t edge_ps);
+  void serve_words(std::size_t words, std::uint64_t last_cycle);
   void serve_in_step(std::uint64_t first_cycle);
   memory::BankArbiter::Outcome decide(std::size_t bank, std::uint64_t cycle, bool write);
   HostTraffic traffic() const;

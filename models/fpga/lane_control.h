@@ -89,9 +89,9 @@ class LaneControl {
     arrived_pixels_ += coming_pixels_ >> image_cycles_ & 1U;
   }
 
-  // Corrects, for each slot that is taken but not handled, whether it needs an access: bit i of `marks` is
-  // for slot handled() + i.
-  void correct_marks(std::uint64_t marks) {
+  // Sets, for each slot that is taken but not handled, whether it needs an access: bit i of `marks` is for
+  // slot handled() + i.
+  void set_marks(std::uint64_t marks) {
     const std::uint64_t place = handled_ % kMostSlots;
     marks_ = place == 0 ? marks : marks << place | marks >> (kMostSlots - place);
   }
@@ -107,8 +107,8 @@ class LaneControl {
            std::uint64_t{coming_pixels_ & ((1U << image_cycles_) - 1)} << kComingPixelsBit;
   }
   // Skips the cycles in which the matcher consumes `slots` slots. The lane is in `state` afterwards. The
-  // caller then calls correct_marks().
-  void skip_to(State state, std::uint64_t slots) {
+  // caller then calls set_marks().
+  void set_state(State state, std::uint64_t slots) {
     static_assert(kMostSlots <= 0xff);
     const auto behind_consumed = [&](unsigned bit) { return consumed_ + (state >> bit & 0xffU); };
     const std::uint64_t taken_before = taken_;
@@ -124,7 +124,7 @@ class LaneControl {
 
   // Whether everything that was read can be used. Then nothing changes in a cycle in which no port of the
   // lane moves and the matcher consumes nothing.
-  bool is_settled() const { return arrived_entries_ == taken_ && arrived_pixels_ == handled_; }
+  bool has_all() const { return arrived_entries_ == taken_ && arrived_pixels_ == handled_; }
   // The number of slots in the lane, and of those that are handled.
   std::uint64_t slots() const { return taken_ - consumed_; }
   std::uint64_t handled_slots() const { return handled_ - consumed_; }

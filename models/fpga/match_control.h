@@ -55,14 +55,14 @@ class MatchControl {
     return columns_ <= geometry_.last_strip_column ? geometry_.rows : geometry_.last_rows;
   }
 
-  // The matcher's part of the state that determines the next cycles: bits 0..2 the part of the frame, bits 3
+  // The matcher's part of the state that determines the next cycles: bits 0..2 the phase, bits 3
   // and 4 the columns of the group that are consumed, bits 5..10 cycle_of_column_, bits 11..18 fold_.
   std::uint64_t state() const {
-    return part() | (columns_ - geometry_.result_delay_columns) % 4 << 3U |
+    return phase() | (columns_ - geometry_.result_delay_columns) % 4 << 3U |
            static_cast<std::uint64_t>(cycle_of_column_) << 5U | static_cast<std::uint64_t>(fold_) << kFoldBit;
   }
-  // The part of the frame: before or after the first results, the last strip, the drain.
-  std::uint64_t part() const {
+  // The phase of the frame: before or after the first results, the last strip, the drain.
+  std::uint64_t phase() const {
     return std::uint64_t{columns_ >= geometry_.result_delay_columns} | std::uint64_t{draining()} << 1U |
            std::uint64_t{columns_ >= fewer_rows_column_} << 2U;
   }
@@ -86,24 +86,16 @@ class MatchControl {
   std::uint64_t consumed() const {
     return columns_ * cycles_per_column() + static_cast<std::uint64_t>(cycle_of_column_);
   }
-  // The number of consume-cycles up to and including the one after which part() changes.
-  std::uint64_t uniform_cycles() const {
-    const std::uint64_t left = draining() ? drain_left_ : left_;
-    if (columns_ < geometry_.result_delay_columns)
-      return std::min(left, geometry_.result_delay_columns * cycles_per_column() - consumed());
-    return columns_ < fewer_rows_column_ && fewer_rows_column_ != UINT64_MAX
-               ? std::min(left, fewer_rows_column_ * cycles_per_column() - consumed())
-               : left;
-  }
   // The number of consume-cycles to the end of the group.
   std::uint64_t cycles_of_group_left() const {
     const std::uint64_t columns = 4 - (columns_ - geometry_.result_delay_columns) % 4;
     return columns * cycles_per_column() - static_cast<std::uint64_t>(cycle_of_column_);
   }
-  // Skips `consumed` consume-cycles, at most uniform_cycles(). The matcher is in `state` afterwards.
-  void skip_to(std::uint64_t state, std::uint64_t consumed) {
-    (draining() ? drain_left_ : left_) -= consumed;
+  // Skips `consumed` consume-cycles. The matcher is in `state` afterwards.
+  void set_state(std::uint64_t state, std::uint64_t consumed) {
     const std::uint64_t all = this->consumed() + consumed;
+    left_ = geometry_.consume_cycles - std::min(all, geometry_.consume_cycles);
+    drain_left_ = geometry_.consume_cycles + geometry_.drain_cycles - std::max(all, geometry_.consume_cycles);
     columns_ = all / cycles_per_column();
     cycle_of_column_ = static_cast<int>(all % cycles_per_column());
     fold_ = static_cast<int>(state >> kFoldBit);

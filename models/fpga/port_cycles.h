@@ -20,10 +20,6 @@ class PortCycles {
   void add(const PortCycles& others, std::uint64_t times) {
     for (std::size_t kind = 0; kind < cycles_.size(); ++kind) cycles_[kind] += others.cycles_[kind] * times;
   }
-  // Subtracts cycles that have been added, or will be before anyone reads the count.
-  void subtract(Intent intent, bool granted, std::uint64_t cycles) {
-    cycles_[kind_of(intent, granted)] -= cycles;
-  }
   // The cycles added since the copy `before` was made.
   PortCycles since(const PortCycles& before) const {
     PortCycles since = *this;

@@ -34,7 +34,7 @@ class ResultControl {
     return static_cast<std::uint64_t>(queued_) | std::uint64_t{written_ != 0} << 8U;
   }
   // Skips the cycles in which `words` words are written. The queue is in `state` afterwards.
-  void skip_to(std::uint64_t state, std::uint64_t words) {
+  void set_state(std::uint64_t state, std::uint64_t words) {
     static_assert(kResultFifoRule.max <= 0xff);
     queued_ = static_cast<int>(state & 0xffU);
     written_ += words;

@@ -109,7 +109,9 @@ bool StereoCore::fast_forwards() const {
 }
 
 void StereoCore::catch_up() {
-  if (frames_.is_running() && is_direct_) frames_.run_ahead(clock_.edge_at_or_after(present_ps()));
+  if (!frames_.is_running() || !is_direct_) return;
+  frames_.run_ahead(clock_.edge_at_or_after(present_ps()));
+  host_port_.count_words();
 }
 
 // Does what is due now, then waits for the next event.
@@ -159,7 +161,7 @@ void StereoCore::run_cycles() {
       wait_until(edge + 1);
       return;
     }
-    if (!frames_.is_running()) frames_.skip_to(next);
+    if (!frames_.is_running()) frames_.set_cycle(next);
     const std::uint64_t offset = edge > now ? edge - now : 0;
     at = offset == offset_before + period_ps ? at + period : kernel_time::to_time(offset);
     offset_before = offset;
@@ -192,7 +194,7 @@ bool StereoCore::step(std::uint64_t edge_ps, const sc_core::sc_time& at) {
   } else {
     granted = crossbar_.arbitrate(cycle, host_requests ? memory::mask_of(ports_.host()) : 0);
     if (host_requests) host_port_.record_cycle(cycle, memory::has(granted, ports_.host()));
-    frames_.skip_to(cycle + 1);
+    frames_.set_cycle(cycle + 1);
   }
   if (memory::has(granted, ports_.host()) && !host_is_served) serve_host();
   return burst_has_ended;

@@ -74,8 +74,7 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   // Frames that were stepped cycle by cycle, at any fidelity.
   std::uint64_t stepped_frames() const { return stepped_frames_; }
 
-  // Advances control() to the present, for observers of a running frame. Words of a burst for an uncontended
-  // bank count as idle cycles of the host port until the frame ends.
+  // Advances control() to the present, for observers of a running frame.
   void catch_up();
 
  private:

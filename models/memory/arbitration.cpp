@@ -39,7 +39,7 @@ void Arbitration::check_route(Port port, std::size_t bank) const {
 void Arbitration::route_stripe(Port port, std::uint64_t banks, bool write) {
   const auto first = static_cast<std::size_t>(__builtin_ctzll(banks));
   check_route(port, 63 - static_cast<std::size_t>(__builtin_clzll(banks)));
-  settle(alone_);
+  count_alone(alone_);
   forget_visits();
   routes_[port] = {first, write, banks};
   routed_ |= mask_of(port);
@@ -48,7 +48,7 @@ void Arbitration::route_stripe(Port port, std::uint64_t banks, bool write) {
 
 void Arbitration::unroute(Port port) {
   check_route(port, 0);
-  settle(alone_);
+  count_alone(alone_);
   forget_visits();
   routed_ &= ~mask_of(port);
   share_banks();
@@ -58,7 +58,7 @@ void Arbitration::visit(Port port, std::size_t bank, bool write) {
   check_route(port, bank);
   const bool is_known = has(routed_ & visitors_, port) && (routes_[port].banks & bank_bit(bank)) != 0;
   if (!is_known || !is_shared(bank)) {
-    settle(ports_on(bank) | mask_of(port));
+    count_alone(ports_on(bank) | mask_of(port));
     if (!has(routed_, port)) routes_[port].banks = 0;
     routes_[port].banks |= bank_bit(bank);
     visitors_ |= mask_of(port);
@@ -144,7 +144,7 @@ void Arbitration::share_banks() {
 }
 
 // Adds the grants of these uncontended ports to the statistics, and moves the orders of their policies.
-void Arbitration::settle(PortMask ports) {
+void Arbitration::count_alone(PortMask ports) {
   for_each_port(ports & alone_, [this](Port port) {
     const std::uint64_t grants = std::exchange(alone_grants_[port], 0);
     if (grants == 0) return;
@@ -211,31 +211,35 @@ void Arbitration::count_skipped(const CountChanges& changes, std::uint64_t times
   }
 }
 
-std::vector<Stall> Arbitration::stalls_of(const CountChanges& changes) const {
-  std::vector<Stall> stalls;
+std::vector<BankUse> Arbitration::bank_uses(const CountChanges& changes) const {
+  std::vector<BankUse> uses;
+  const ArbiterStats& stats = arbiters_.front().stats();
   for (const auto& [place, change] : changes) {
-    if (place < port_count_) continue;
-    const auto stall = arbiters_.front().stats().stall_at((place - port_count_) % counts_of_bank());
-    if (stall)
-      stalls.push_back({stall->first, (place - port_count_) / counts_of_bank(), stall->second, change});
+    if (place < port_count_) {
+      uses.push_back({place, BankUse::kAlone, kGranted, change});
+      continue;
+    }
+    const std::size_t bank = (place - port_count_) / counts_of_bank();
+    if (const auto use = stats.use_at((place - port_count_) % counts_of_bank()))
+      uses.push_back({use->first, bank, use->second, change});
   }
-  std::sort(stalls.begin(), stalls.end(), [](const Stall& a, const Stall& b) {
-    return std::tie(a.port, a.bank, a.by) < std::tie(b.port, b.bank, b.by);
+  std::sort(uses.begin(), uses.end(), [](const BankUse& a, const BankUse& b) {
+    return std::tie(a.port, a.shared_bank, a.by) < std::tie(b.port, b.shared_bank, b.by);
   });
-  return stalls;
+  return uses;
 }
 
 void Arbitration::begin_counting(std::uint64_t first_cycle) {
-  settle(alone_);
+  count_alone(alone_);
   for (BankArbiter& arbiter : arbiters_) arbiter.begin_counting(first_cycle);
 }
 
 void Arbitration::end_counting(std::uint64_t end_cycle) {
-  settle(alone_);
+  count_alone(alone_);
   for (BankArbiter& arbiter : arbiters_) arbiter.end_counting(end_cycle);
 }
 
-// Adds the grants since the last settle(): in all of their cycles counting is on, or in none.
+// Adds the grants since the last count_alone(): in all of their cycles counting is on, or in none.
 ArbiterStats Arbitration::stats(std::size_t bank) const {
   BankArbiter arbiter = arbiters_[bank];
   for_each_port(alone_, [&](Port port) {

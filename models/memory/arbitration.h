@@ -10,12 +10,14 @@
 
 namespace stereotlm::memory {
 
-// Stall cycles of a port.
-struct Stall {
-  Port port = 0;             // port that stalls
-  std::size_t bank = 0;      // number among Arbitration::shared_bank()
-  std::size_t by = 0;        // the port that was granted, or another cause (ArbiterStats)
-  std::uint64_t cycles = 0;  // stalled
+// What a port did at a bank in some cycles.
+struct BankUse {
+  static constexpr std::size_t kAlone = SIZE_MAX;
+
+  Port port = 0;
+  std::size_t shared_bank = kAlone;  // number among the banks of Arbitration::shared(); kAlone: its own bank
+  std::size_t by = kGranted;         // or the port that was granted instead, or another cause of a stall
+  std::uint64_t cycles = 0;
 };
 
 // Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
@@ -97,10 +99,11 @@ class Arbitration {
   CountChanges take_recorded() const;
   // Adds the counts of skipped cycles.
   void count_skipped(const CountChanges& changes, std::uint64_t times);
-  // The banks of shared(), in their order.
-  std::size_t shared_bank(std::size_t number) const { return shared_banks_[number].bank; }
-  // The stalls among the changes, sorted by port, bank and cause.
-  std::vector<Stall> stalls_of(const CountChanges& changes) const;
+  // What the ports did in the cycles of these changes, sorted by port, bank and cause.
+  std::vector<BankUse> bank_uses(const CountChanges& changes) const;
+  std::size_t bank_of(const BankUse& use) const {
+    return use.shared_bank == BankUse::kAlone ? bank_of(use.port) : shared_banks_[use.shared_bank].bank;
+  }
 
   // The statistics count cycles first_cycle .. end_cycle - 1 only. end_counting() adds the idle cycles.
   void begin_counting(std::uint64_t first_cycle);
@@ -128,7 +131,7 @@ class Arbitration {
   void move(Port port, std::size_t bank);
   PortMask ports_on(std::size_t bank) const { return ports_on_[bank]; }
   void share_banks();
-  void settle(PortMask ports);
+  void count_alone(PortMask ports);
   PortMask arbitrate_shared(std::uint64_t cycle, PortMask requests);
   // All counters that may change as long as no route does: the grants of the uncontended ports, then the
   // statistics of each shared bank.

@@ -25,6 +25,7 @@ inline constexpr std::size_t kTurnaround = kMostPorts;
 inline constexpr std::size_t kRow = kMostPorts + 1;      // of sdram: a row is being opened
 inline constexpr std::size_t kRefresh = kMostPorts + 2;  // of sdram
 inline constexpr std::size_t kOtherCauses = kRefresh + 1 - kMostPorts;
+inline constexpr std::size_t kGranted = SIZE_MAX;  // no stall
 inline const char* name_of_cause(std::size_t cause) {
   return cause == kTurnaround ? "turnaround" : cause == kRow ? "row" : "refresh";
 }
@@ -73,9 +74,11 @@ class ArbiterStats {
     const std::size_t cause = by < kMostPorts ? by : ports_ + (by - kMostPorts);
     return kFirstGrants + ports_ + port * (ports_ + kOtherCauses) + cause;
   }
-  // The port and the cause of a place in the blame; nothing for any other place.
-  std::optional<std::pair<Port, std::size_t>> stall_at(std::size_t place) const {
-    if (place < kFirstGrants + ports_) return std::nullopt;
+  // The port of a place in the grants, with kGranted, or in the blame, with the cause. Nothing for any other
+  // place.
+  std::optional<std::pair<Port, std::size_t>> use_at(std::size_t place) const {
+    if (place < kFirstGrants) return std::nullopt;
+    if (place < kFirstGrants + ports_) return std::pair{place - kFirstGrants, kGranted};
     const std::size_t of_blame = place - kFirstGrants - ports_;
     const std::size_t causes = ports_ + kOtherCauses;
     const std::size_t by = of_blame % causes;

@@ -25,6 +25,7 @@ bool FastCore::start_frame(std::uint64_t cycle, const FrameStart& start) {
   failed_ = false;
   next_check_ps_ = 0;
   if (!works_directly(start)) return false;
+  host_port_.leave();
   frames_.start_direct(cycle, start.bases, direct_frame_.patterns());
   return true;
 }

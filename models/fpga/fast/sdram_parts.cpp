@@ -8,7 +8,7 @@ namespace {
 
 // How a state writes the row that an internal bank has open.
 constexpr std::uint64_t kClosed = 0;
-constexpr std::uint64_t kForeign = 1;  // a row without buffer of the frame: the same as before the walk
+constexpr std::uint64_t kForeign = 1;  // a row without buffer of the frame, which stays open
 constexpr std::uint64_t kFirst = 2;    // that of part 0 with number -kBias
 
 constexpr std::int64_t kBias = std::int64_t{1} << 24U;  // more than a bank has rows
@@ -18,8 +18,8 @@ constexpr unsigned kPartBit = 32;
 
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column) {
   const bool of_results = part.group == kResultGroup;
-  // Before the first results the number of the strip is negative, and grows with each strip. FrameAreas
-  // begins no area there, so the origin must not move.
+  // Before the first results the number of the strip is negative, and grows with each strip. The origin must
+  // not move there.
   const std::int64_t row = of_results ? std::max<std::int64_t>(0, geometry.first_row_at(true, column))
                                       : geometry.first_row_at(false, column);
   return floor_divide(part.word_of(row), part.turn()) * part.internal_banks;
@@ -67,10 +67,6 @@ void OpenRows::start_frame(std::vector<SdramPart> parts, memory::Arbitration& ar
     if (bank == banks_.end()) bank = banks_.insert(bank, {part.bank, &arbitration.arbiter(part.bank), {}});
     bank->parts.push_back(part);
   }
-  refreshes_ = 0;
-  for (const Bank& bank : banks_) {
-    refreshes_ += bank.rows().timing().refresh_interval_cycles ? 1 : 0;
-  }
 }
 
 void OpenRows::append_state(std::uint64_t cycle, std::uint64_t column, memory::StateWords& state) const {
@@ -111,13 +107,14 @@ void OpenRows::set_state(std::uint64_t cycle, std::uint64_t column, memory::Stat
   }
 }
 
-void OpenRows::append_refreshes(std::uint64_t cycle, memory::StateReader state,
-                                std::vector<std::int64_t>& refreshes) const {
+std::vector<std::int64_t> OpenRows::refreshes(std::uint64_t cycle, memory::StateReader state) const {
+  std::vector<std::int64_t> refreshes;
   for (const Bank& bank : banks_) {
     if (const std::uint64_t next = bank.rows().next_refresh(cycle, *state); next != 0)
       refreshes.push_back(static_cast<std::int64_t>(next) - static_cast<std::int64_t>(cycle));
     state += 1 + bank.rows().timing().internal_banks;
   }
+  return refreshes;
 }
 
 }  // namespace stereotlm::fpga

@@ -40,9 +40,9 @@ struct SdramPart {
   }
 };
 
-// The row of the sdram from which those of a part are counted at a column of the matcher: the row that holds
-// the first row of the strip, or one before it, in internal bank 0. Before the first results it is that of
-// strip 0 for them.
+// The row of the sdram from which the rows of a part are counted at a column of the matcher: a row of
+// internal bank 0, less than a turn() before the first row of the strip. Before the first results it is that
+// of strip 0.
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column);
 
 // Those of the buffers of a frame. `timings`: [bank], null for any other kind.
@@ -52,17 +52,14 @@ std::vector<SdramPart> sdram_parts(const CoreConfig& config, const Placements& p
 // Whether each row of the sdram belongs to one part at most, so that its number says what it holds.
 bool are_apart(const std::vector<SdramPart>& parts);
 
-// The state of the banks of sdram in a walk (FastForward). The number of an open row is counted from a place
-// that moves with the strips, so that a state comes again in later strips.
+// The state of the banks of sdram, for FastForward. The number of an open row is counted from origin_row(),
+// which moves with the strips, so that a state comes again in later strips.
 class OpenRows {
  public:
   explicit OpenRows(const FrameGeometry& geometry) : geometry_(geometry) {}
 
   // The buffers of the frame; `arbitration` outlives it.
   void start_frame(std::vector<SdramPart> parts, memory::Arbitration& arbitration);
-  // The number of banks with refreshes.
-  std::size_t refreshes() const { return refreshes_; }
-
   // Counts the cycles before `cycle` in which a row was opened, or a bank refreshed.
   void count(std::uint64_t cycle) {
     for (const Bank& bank : banks_) bank.arbiter->count_rows(cycle);
@@ -70,10 +67,9 @@ class OpenRows {
   // `column`: of the matcher. The cycles before `cycle` have been counted.
   void append_state(std::uint64_t cycle, std::uint64_t column, memory::StateWords& state) const;
   void set_state(std::uint64_t cycle, std::uint64_t column, memory::StateReader& state) const;
-  // From the words of a state in `cycle`: the cycles up to the next refresh of each bank that has any,
-  // negative if it is late.
-  void append_refreshes(std::uint64_t cycle, memory::StateReader state,
-                        std::vector<std::int64_t>& refreshes) const;
+  // From the words of a state in `cycle`: the cycles to the next refresh of each bank that has any, negative
+  // if it is late.
+  std::vector<std::int64_t> refreshes(std::uint64_t cycle, memory::StateReader state) const;
 
  private:
   struct Bank {
@@ -86,7 +82,6 @@ class OpenRows {
 
   FrameGeometry geometry_;
   std::vector<Bank> banks_;
-  std::size_t refreshes_ = 0;
 };
 
 }  // namespace stereotlm::fpga

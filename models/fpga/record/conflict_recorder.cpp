@@ -50,22 +50,21 @@ ConflictRecorder::ConflictRecorder(const CoreConfig& config,
       tile_cycles_(tiles()),
       indices_(requesters_.size() * banks_ * requesters_.causes()) {}
 
-bool ConflictRecorder::start_frame(std::uint64_t cycle, const CoreControl& control,
-                                   const memory::Arbitration& arbitration) {
-  control_ = &control;
-  arbitration_ = &arbitration;
+bool ConflictRecorder::start_frame(std::uint64_t cycle, const memory::Arbitration& arbitration) {
   is_recording_ = frames_begun_++ < frames_wanted_;
   if (!is_recording_) return false;
-  first_cycle_ = cycle_ = cycle;
+  first_cycle_ = cycle;
   strip_ = group_ = strip_tile_ = 0;
   grants_.clear();
+  grants_place_.assign(requesters_.ports().core_size() * banks_, 0);
   for (memory::Port port = 0; port < requesters_.ports().core_size(); ++port) {
-    if (!arbitration_->is_routed(port)) continue;
+    if (!arbitration.is_routed(port)) continue;
     for (std::size_t bank = 0; bank < banks_; ++bank) {
-      if ((arbitration_->banks_of(port) >> bank & 1U) != 0) grants_.push_back({port, bank, 0});
+      if ((arbitration.banks_of(port) >> bank & 1U) == 0) continue;
+      grants_place_[port * banks_ + bank] = grants_.size();
+      grants_.push_back({port, bank, 0});
     }
   }
-  for (StripConflicts::Grants& grants : grants_) grants.cycles = grants_now(grants);
   served_.clear();
   frame_.number = frames_begun_ - 1;
   frame_.first_cycle = cycle;
@@ -83,108 +82,37 @@ std::size_t ConflictRecorder::first_cause(std::size_t requester, std::size_t ban
   return stalls_.size() - 1;
 }
 
-void ConflictRecorder::step(memory::PortMask requests, memory::PortMask granted) {
-  const memory::Port host = requesters_.ports().host();
-  if (memory::has(granted, host)) ++host_accesses(strip_, arbitration_->bank_of(host), traffic_);
-  memory::for_each_port(requests & ~granted, [&](memory::Port port) {
-    const std::size_t by = requester_of_port(arbitration_->cause_of(port, granted));
-    const std::size_t cause = cause_of(requester_of_port(port), arbitration_->bank_of(port), by);
-    ++stalls_[cause].cycles[tile()];
-    ++of_strip_[cause];
-  });
+void ConflictRecorder::hear(memory::Port port, std::size_t bank, std::size_t by, std::uint64_t cycles) {
+  if (by != memory::kGranted) {
+    const std::size_t cause = cause_of(requester_of_port(port), bank, requester_of_port(by));
+    stalls_[cause].cycles[tile()] += cycles;
+    of_strip_[cause] += cycles;
+  } else if (port == requesters_.ports().host()) {
+    host_accesses(strip_, bank, traffic_) += cycles;
+  } else {
+    grants_[grants_place_[port * banks_ + bank]].cycles += cycles;
+  }
 }
 
 void ConflictRecorder::end_group(std::uint64_t next_cycle) {
-  cycle_ = next_cycle;
-  if (strip_ != 0) ends_[place_of(strip_, group_)] = cycle_;
+  ends_[place_of(strip_, group_)] = next_cycle;
   ++group_;
-  if (is_at_strip_end()) end_strip();
-}
-
-void ConflictRecorder::add_part(const GroupConflicts& part) {
-  count_host_words(part, 1);
-  add_stalls(part, 0, 1, 1);
-  cycle_ += part.cycles;
-}
-
-void ConflictRecorder::count_host_words(const GroupConflicts& group, std::uint64_t times) {
-  if (group.host_words != 0)
-    host_accesses(strip_, arbitration_->bank_of(requesters_.ports().host()), traffic_) +=
-        group.host_words * times;
-}
-
-void ConflictRecorder::repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times) {
-  for (std::size_t first = 0; first < size; ++first) {
-    const GroupConflicts& group = *groups[first];
-    count_host_words(group, times);
-    if (!group.stalls.empty()) add_stalls(group, first, static_cast<std::size_t>(times), size);
-  }
-  if (strip_ == 0) {
-    group_ += size * static_cast<std::size_t>(times);
-    for (std::size_t group = 0; group < size; ++group) cycle_ += groups[group]->cycles * times;
-    return;
-  }
-  std::uint64_t* const ends = ends_.data() + place_of(strip_, 0);
-  std::uint64_t cycle = cycle_;
-  std::size_t next = group_;
-  for (std::uint64_t time = 0; time < times; ++time) {
-    for (std::size_t group = 0; group < size; ++group) {
-      cycle += groups[group]->cycles;
-      ends[next++ >> group_shift_] = cycle;
-    }
-  }
-  cycle_ = cycle;
-  group_ = next;
-}
-
-// Adds the stalls of a group that comes `count` times, every `step` groups. The first time is `first` groups
-// after group number group_.
-void ConflictRecorder::add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count,
-                                  std::size_t step) {
-  for (const memory::Stall& stall : group.stalls) {
-    const std::size_t cause = cause_of(requester_of_port(stall.port), arbitration_->shared_bank(stall.bank),
-                                       requester_of_port(stall.by));
-    std::uint64_t* const cycles = stalls_[cause].cycles.data();
-    of_strip_[cause] += stall.cycles * count;
-    if (strip_ == 0) {
-      cycles[0] += stall.cycles * count;
-      continue;
-    }
-    std::uint64_t* const of_strip = cycles + strip_tile_;
-    const std::uint64_t of_group = stall.cycles;
-    if (step == 1 && group_shift_ == 0) {  // mostly, and faster
-      for (std::size_t next = group_; next < group_ + count; ++next) of_strip[next] += of_group;
-      continue;
-    }
-    for (std::size_t next = group_ + first, end = next + step * count; next < end; next += step)
-      of_strip[next >> group_shift_] += of_group;
-  }
+  if (group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_)) end_strip();
 }
 
 void ConflictRecorder::end_strip() {
   if (strip_ + 1 == strips_) return;  // the last strip ends with the frame
-  if (strip_ == 0) ends_[0] = cycle_;
   count_strip();
   ++strip_;
   group_ = 0;
   strip_tile_ = tile_of(strip_);
 }
 
-// The grants of a port at a bank up to now.
-std::uint64_t ConflictRecorder::grants_now(const StripConflicts::Grants& of_port) const {
-  const auto& [port, bank, cycles] = of_port;
-  if (arbitration_->banks_of(port) != std::uint64_t{1} << bank)
-    return arbitration_->arbiter(bank).stats().grants(port);  // one of several banks
-  return control_->port_cycles(port).granted();
-}
-
 // Counts the grants of the core and all stalls since the end of the strip before.
 void ConflictRecorder::count_strip() {
   for (StripConflicts::Grants& grants : grants_) {
-    const std::uint64_t now = grants_now(grants);
-    const std::uint64_t of_strip = now - std::exchange(grants.cycles, now);
-    frame_.strips[strip_].grants.push_back({grants.port, grants.bank, of_strip});
-    accesses_of(strip_, grants.bank)[0] += of_strip;
+    frame_.strips[strip_].grants.push_back(grants);
+    accesses_of(strip_, grants.bank)[0] += std::exchange(grants.cycles, 0);
   }
   for (std::size_t cause = 0; cause < of_strip_.size(); ++cause) {
     if (of_strip_[cause] != 0) frame_.stalls.push_back({strip_, cause, std::exchange(of_strip_[cause], 0)});
@@ -198,7 +126,7 @@ HostTraffic ConflictRecorder::traffic_of(bool write, std::uint64_t address) cons
   return is_captured ? HostTraffic::kCapture : HostTraffic::kUpload;
 }
 
-void ConflictRecorder::add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle,
+void ConflictRecorder::hear_apart(HostTraffic traffic, std::size_t bank, std::uint64_t cycle,
                                   std::uint64_t cycles, bool granted, std::size_t by) {
   if (!is_recording_) return;
   if (!served_.empty()) {

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "models/address_range.h"
-#include "models/fpga/core_control.h"
+#include "models/fpga/core_config.h"
 #include "models/fpga/core_ports.h"
+#include "models/fpga/frame_geometry.h"
 #include "models/fpga/record/requesters.h"
 #include "models/memory/arbitration.h"
 
@@ -26,14 +27,6 @@ struct TileGrid {
   std::size_t rows_of_tile;     // pixels; the last tile may be lower
   std::size_t groups_of_tile;   // groups of four columns side by side in a tile
   std::size_t strips_of_tile;
-};
-
-// The cycles of one group of four columns of the matcher, up to and including the cycle that completes it; or
-// a part of them.
-struct GroupConflicts {
-  std::uint64_t cycles = 0;
-  std::uint64_t host_words = 0;  // that the host is granted
-  std::vector<memory::Stall> stalls;
 };
 
 // Who stalls at which bank because of whom.
@@ -101,30 +94,23 @@ class ConflictRecorder {
   void record_only(std::uint64_t frames) { frames_wanted_ = frames; }
 
   // For FrameRun. A frame whose start returns false is not recorded: nothing else may be called for it.
-  // `control` and `arbitration` are those of the core.
-  bool start_frame(std::uint64_t cycle, const CoreControl& control, const memory::Arbitration& arbitration);
+  // `arbitration` is that of the core, with the routes of the frame.
+  bool start_frame(std::uint64_t cycle, const memory::Arbitration& arbitration);
   void end_frame(std::uint64_t end_cycle);
 
-  // For CoreStepper: these ports requested and were granted in a cycle. May be left out for a cycle in which
-  // the host was not granted and nobody was refused.
-  void step(memory::PortMask requests, memory::PortMask granted);
+  // In `cycles` cycles of the next group a port was granted (`by` is memory::kGranted), or it stalled because
+  // of `by`, a port or another cause. Of the host's port only words that contend with the frame.
+  void hear(memory::Port port, std::size_t bank, std::size_t by, std::uint64_t cycles = 1);
+  // The same for the ports of one cycle.
+  void step(memory::PortMask requests, memory::PortMask granted, const memory::Arbitration& arbitration) {
+    memory::for_each_port(requests, [&](memory::Port port) {
+      const bool is_granted = memory::has(granted, port);
+      hear(port, arbitration.bank_of(port),
+           is_granted ? memory::kGranted : arbitration.cause_of(port, granted));
+    });
+  }
   // The group has been completed in the cycle before `next_cycle`.
   void end_group(std::uint64_t next_cycle);
-
-  // For FastForward, which skips groups and parts of groups, from this cycle on.
-  void skip_from(std::uint64_t cycle) { cycle_ = cycle; }
-  // A part of a group, but not its end.
-  void add_part(const GroupConflicts& part);
-  // The number of columns up to the end of the strip. When end_strip() is called, the core must be in the
-  // state after them.
-  std::uint64_t strip_end_column() const {
-    return geometry_.result_delay_columns + 4 * groups_of_strip_ * strip_;
-  }
-  // Adds groups that follow each other, this sequence `times` times. The first one may be the rest of a
-  // group. None lies beyond the end of the strip.
-  void repeat(const GroupConflicts* const* groups, std::size_t size, std::uint64_t times);
-  bool is_at_strip_end() const { return group_ == (strip_ == 0 ? groups_of_fill_ : groups_of_strip_); }
-  void end_strip();
 
   // For HostPort. The traffic of a burst, and that of the words which take part in the arbitration from now
   // on.
@@ -132,7 +118,7 @@ class ConflictRecorder {
   void set_host_traffic(HostTraffic traffic) { traffic_ = traffic; }
   // In these cycles of the running frame the host was granted words of an uncontended bank. If not `granted`,
   // it was refused a word because of `cause`: memory::kTurnaround, ..
-  void add_served(HostTraffic traffic, std::size_t bank, std::uint64_t cycle, std::uint64_t cycles,
+  void hear_apart(HostTraffic traffic, std::size_t bank, std::uint64_t cycle, std::uint64_t cycles,
                   bool granted, std::size_t cause = memory::kTurnaround);
 
   // Of a port, or of another cause.
@@ -194,10 +180,8 @@ class ConflictRecorder {
   std::uint64_t& host_accesses(std::size_t strip, std::size_t bank, HostTraffic traffic) {
     return accesses_of(strip, bank)[1 + static_cast<std::size_t>(traffic)];
   }
-  void count_host_words(const GroupConflicts& group, std::uint64_t times);
-  void add_stalls(const GroupConflicts& group, std::size_t first, std::size_t count, std::size_t step);
-  std::uint64_t grants_now(const StripConflicts::Grants& of_port) const;
   void count_strip();
+  void end_strip();
   std::size_t tiles() const { return 1 + grid_.columns * grid_.rows; }
   void count_served();
 
@@ -214,16 +198,14 @@ class ConflictRecorder {
   HostTraffic traffic_ = HostTraffic::kCapture;
 
   // The running frame.
-  const CoreControl* control_ = nullptr;
-  const memory::Arbitration* arbitration_ = nullptr;
   bool is_recording_ = false;
   std::uint64_t first_cycle_ = 0;
-  std::uint64_t cycle_ = 0;     // the first one after the last group, and the transitions skipped since then
   std::size_t strip_ = 0;       // of the next group
   std::size_t group_ = 0;       // number of the next group in its strip
   std::size_t strip_tile_ = 0;  // the first tile of this strip
-  // Up to the end of the strip before: of each port of the core, at each of its banks.
+  // In the strip of the next group: of each port of the core, at each of its banks.
   std::vector<StripConflicts::Grants> grants_;
+  std::vector<std::size_t> grants_place_;  // [port][bank]: in grants_
   // [place_of()]: the first cycle after the part of a tile in its strip.
   std::vector<std::uint64_t> ends_;
   std::vector<Served> served_;

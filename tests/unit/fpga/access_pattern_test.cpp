@@ -82,12 +82,6 @@ TEST(AccessPattern, EqualsAWalkOverTheSlots) {
       expected = expected << 1U | std::uint64_t{pixels[slot]};
       ASSERT_EQ(pattern.pixels_of_slots(slot), expected) << slot;
     }
-    std::uint64_t next = geometry.slots;
-    for (slot = geometry.slots; slot-- > 0;) {
-      const std::uint64_t last = slot + 4 * columns.front().size();
-      if (last < geometry.slots && pixels[last] != pixels[slot]) next = last;
-      ASSERT_EQ(pattern.uniform_until(slot), next) << slot;
-    }
   }
 }
 

@@ -184,14 +184,17 @@ class Core {
     run_.emplace(config, banks, *arbitration_, UINT64_MAX);
     if (random.chance(30)) run_->record_rows();
   }
-  void start() { run_->start_direct(run_->cycle(), bases_, patterns_); }
+  void start() {
+    if (steps_) return run_->start_stepped(run_->cycle(), bases_);
+    run_->start_direct(run_->cycle(), bases_, patterns_);
+  }
   void advance(std::uint64_t end) {
     if (!steps_) run_->run_ahead(end);
     while (run_->cycle() < end && !done()) step(false);
   }
   // Returns the cycle of the last grant. Each word requests in the cycle after a grant.
   std::uint64_t serve(std::uint64_t first, FastForward::Route route, std::size_t words) {
-    if (steps_) return serve_stepped(first, route, words, 0);
+    if (steps_) return serve_stepped(first, route, words);
     std::uint64_t last = first;
     while (words > 0 && !done()) {
       const FastForward::Served served = run_->serve_host(route, first, words);
@@ -201,27 +204,6 @@ class Core {
     }
     return last;
   }
-  // Word by word. The first requests `waits` cycles after it has been routed.
-  std::uint64_t serve_stepped(std::uint64_t first, FastForward::Route route, std::size_t words,
-                              std::uint64_t waits) {
-    advance(first);
-    if (done()) return first;
-    run_->host_route_changes();
-    arbitration_->route(kHostGroup, route.bank, route.write);
-    advance(cycle() + waits);
-    while (words > 0 && !done()) {
-      if (memory::has(arbitration_->placed(), kHostGroup))
-        arbitration_->place(kHostGroup, route.bank, route.word);
-      if (!step(true)) continue;
-      --words;
-      ++route.word;
-      first = run_->cycle() - 1;
-    }
-    run_->host_route_changes();
-    arbitration_->unroute(kHostGroup);
-    return first;
-  }
-  bool step(bool requests) { return (run_->step(requests) & memory::mask_of(kHostGroup)) != 0; }
   void finish() {
     advance(UINT64_MAX);
     run_->finish();
@@ -237,6 +219,44 @@ class Core {
   }
 
  private:
+  std::uint64_t serve_stepped(std::uint64_t first, FastForward::Route route, std::size_t words) {
+    advance(first);
+    if (done()) return first;
+    arbitration_->route(kHostGroup, route.bank, route.write);
+    for (; words > 0 && !done();) {
+      if (memory::has(arbitration_->placed(), kHostGroup))
+        arbitration_->place(kHostGroup, route.bank, route.word);
+      if (!step(true)) continue;
+      --words;
+      ++route.word;
+      first = run_->cycle() - 1;
+    }
+    arbitration_->unroute(kHostGroup);
+    return first;
+  }
+  bool step(bool requests) {
+    const CoreControl& control = run_->control();
+    const auto pattern = [&](std::size_t lane) -> const AccessPattern& {
+      return patterns_[index_of(control.side_of(lane))];
+    };
+    const auto needs_pixel = [&](const CoreControl::Decision& /*decision*/, memory::PortMask granted) {
+      PixelNeeds needs = 0;
+      for (std::size_t lane = 0; lane < control.lanes().size(); ++lane) {
+        const SlotCursor& slot = control.lane(lane).next_slot();
+        if (memory::has(granted, control.table_port(lane)) &&
+            pattern(lane).needs_pixel(slot.column(), slot.row()))
+          needs |= PixelNeeds{1} << lane;
+      }
+      return needs;
+    };
+    const auto entry = [&](std::size_t lane) {
+      SlotCursor slot = control.lane(lane).first_slot();
+      slot.advance(control.lane(lane).handled());
+      return pattern(lane).entry(slot.column(), slot.row());
+    };
+    return memory::has(run_->step(requests, needs_pixel, entry), kHostGroup);
+  }
+
   bool steps_;
   FrameBases bases_{};
   std::array<std::vector<std::uint32_t>, 2> entries_;
@@ -266,8 +286,7 @@ TEST(FastForward, GrantsBurstsInTheCyclesOfItsSteps) {
         const std::uint64_t waits = random.chance(others / 4) ? random.next() % 500 : 0;
         const auto serve = [&](Core& core) {
           const auto size = static_cast<std::size_t>(count);
-          const std::uint64_t last =
-              waits == 0 ? core.serve(first, route, size) : core.serve_stepped(first, route, size, waits);
+          const std::uint64_t last = core.serve(std::max(first, core.cycle()) + waits, route, size);
           if (pause % 2 == 0) core.advance(last + static_cast<std::uint64_t>(pause / 2));
           return last;
         };
@@ -316,7 +335,7 @@ class EarliestLastWrite : public testing::TestWithParam<LastWrite> {
     while (!run.control().frame_done()) {
       bounds[run.cycle()] = run.earliest_last_write();
       const std::uint64_t writes = run.writes();
-      run.step(false);
+      run.run_ahead(run.cycle() + 1);
       if (run.writes() > writes) last_write = run.cycle() - 1;
     }
     run.finish();

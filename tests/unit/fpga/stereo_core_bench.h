@@ -125,7 +125,7 @@ class StereoCoreBench : public testing::Test {
     return latencies + geometry.slots + geometry.drain_cycles + 1 + pipeline();
   }
   std::uint64_t pipeline() const { return static_cast<std::uint64_t>(config.core.pipeline_latency_cycles); }
-  const PortCycles& port(memory::Port which) const { return core->control().port_cycles(which); }
+  PortCycles port(memory::Port which) const { return core->control().port_cycles(which); }
   // Words that reached a bank by transport, and directly.
   std::uint64_t transported(std::uint32_t bank) const {
     return banks[bank]->stats().reads + banks[bank]->stats().writes;

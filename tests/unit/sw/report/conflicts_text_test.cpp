@@ -62,17 +62,16 @@ class MadeConflicts {
       : conflicts_(board_, most_tiles) {
     constexpr memory::PortMask kLut = memory::mask_of(fpga::lut_group(fpga::Side::kLeft));
     constexpr memory::PortMask kPixel = memory::mask_of(fpga::pixel_group(fpga::Side::kLeft));
-    const fpga::CoreControl control(platform::core_config(board_));
     memory::Arbitration arbitration(board_.fpga.arbiter, platform::ssram_configs(board_));
     for (const fpga::Side side : {fpga::Side::kLeft, fpga::Side::kRight}) {
       arbitration.route(fpga::lut_group(side), 1, false);
       arbitration.route(fpga::pixel_group(side), 1, false);
     }
     fpga::ConflictRecorder& recorder = conflicts_.recorder();
-    recorder.start_frame(0, control, arbitration);
+    recorder.start_frame(0, arbitration);
     std::uint64_t cycle = 0;
     const auto end_group = [&](std::uint64_t waits) {
-      for (; waits != 0; --waits) recorder.step(kLut | kPixel, kPixel);
+      for (; waits != 0; --waits) recorder.step(kLut | kPixel, kPixel, arbitration);
       recorder.end_group(cycle += 10);
     };
     for (; recorder.strip() == 0; in_fill = 0) end_group(in_fill);
