@@ -26,8 +26,8 @@ COMMANDS = (
 ).split()
 OPTIONS_OF_RUN = (
     "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
-    "--truth-scale,--set,--out,--save-frames,--record,--no-record,--fidelity fast|cycle,--timing-only,--verify,"
-    "--trace FORMAT:FILE,--trace-window,default 1"
+    "--truth-scale,--set,--out,--save-frames,--record,--no-record,--fidelity fast|cycle,--timing-only,"
+    "--verify,--trace FORMAT:FILE,--trace-window,default 1"
 )
 SMALL_KEYS = "{image.width: 32, image.height: 24}"
 NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")

@@ -349,8 +349,9 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
              bool writes_files) {
   test::ProbingBinder binder("crossbar");
   PicturesOfCase pictures(of);
-  const std::unique_ptr<runs::Simulation> simulation = runs::make_simulation(
-      of.board, of.tables, pictures, {of.computer.has_value(), fidelity, of.frames, runs::kAllFrames}, binder);
+  const std::unique_ptr<runs::Simulation> simulation =
+      runs::make_simulation(of.board, of.tables, pictures,
+                            {of.computer.has_value(), fidelity, of.frames, runs::kAllFrames}, binder);
   const test::ScratchFolder scratch;
   std::vector<trace::TraceFile> files;
   std::map<std::string, std::string> paths;  // by format

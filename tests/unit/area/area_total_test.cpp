@@ -100,8 +100,8 @@ TEST(AreaTotal, FitsUpToTheLastOfEachResource) {
   EXPECT_FALSE(total_of({0, 0, 0, 145}).fits());
 }
 
-// The one constant of the area model, for the least squared error over the rows of the paper's Table 2: images
-// of 640x480, windows of 7x7, tables and filters for both sides.
+// The one constant of the area model, for the least squared error over the rows of the paper's Table 2:
+// images of 640x480, windows of 7x7, tables and filters for both sides.
 TEST(AreaTotal, HasTheConstantThatFitsThePapersTable2) {
   struct Row {
     int disparities;
