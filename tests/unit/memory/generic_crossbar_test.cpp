@@ -496,8 +496,8 @@ class PlainCrossbar {
 
 class RandomTraffic : public ::testing::TestWithParam<std::uint64_t> {};
 
-// At clocks of 5 to 1,000 MHz. One crossbar for each process: SystemC elaborates once. Ports with even numbers
-// use b_transport, the others nb_transport.
+// At clocks of 5 to 1,000 MHz. One crossbar for each process: SystemC elaborates once. Ports with even
+// numbers use b_transport, the others nb_transport.
 TEST_P(RandomTraffic, IsGrantedAsInThePlainLoop) {
   const Traffic traffic = draw(GetParam());
   Bench bench(traffic.config);
