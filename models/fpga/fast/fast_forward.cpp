@@ -298,6 +298,7 @@ void FastForward::follow(const Transition& transition, std::uint64_t& cycle, std
   if (refresh_left_ == UINT64_MAX) return;
   if (cycles > refresh_left_) {
     set_refresh_left(cycle);
+    loop_.most = 0;  // a refresh does not come again with it
   } else {
     refresh_left_ -= cycles;
   }
