@@ -173,13 +173,16 @@ bool FastForward::skip_transition(std::uint64_t& cycle, std::uint64_t end) {
   const std::uint64_t end_alone = std::min(host_.words == 0 ? end : std::min(end, host_.first), recorded);
   if (end_alone > cycle) {
     if (const auto found = find(cycle, {}, end_alone - cycle)) {
-      follow(*found, cycle, times_alike(*found, end_alone - cycle));
+      const std::uint64_t times = times_alike(*found, end_alone - cycle);
+      follow(*found, cycle, times);
+      if (times == 1) follow_loop(*found, cycle, end_alone);
       return true;
     }
   }
   if (host_.words == 0 || host_opens_rows()) return false;
   const auto found = find_with_host(cycle, recorded);
   if (found) follow(*found, cycle, 1);
+  loop_.most = 0;
   return found.has_value();
 }
 
@@ -295,9 +298,37 @@ void FastForward::follow(const Transition& transition, std::uint64_t& cycle, std
   if (refresh_left_ == UINT64_MAX) return;
   if (cycles > refresh_left_) {
     set_refresh_left(cycle);
+    loop_.most = 0;  // a refresh does not come again with it
   } else {
     refresh_left_ -= cycles;
   }
+}
+
+// To be called behind a transition that was followed once, `last`. If it closes a loop, follows the loop as
+// often as it comes again before `end`. Contended ports have such loops of a few groups.
+void FastForward::follow_loop(const Transition& last, std::uint64_t& cycle, std::uint64_t end) {
+  if (!can_follow_ || varying_[0] != nullptr || varying_[1] != nullptr) return;
+  std::vector<Transition>& loop = loop_.transitions;
+  const bool is_open = loop_.most != 0 && place_.number == loop_.place;
+  if (is_open) loop.push_back(last);
+  if (!is_open || (state_ != loop_.from && loop.size() == loop_.most)) {
+    loop_.most = is_open ? std::min(2 * loop_.most, Loop::kMost) : 1;
+    loop_.from = state_;
+    loop_.place = place_.number;
+    loop.clear();
+    return;
+  }
+  if (state_ != loop_.from) return;
+  Progress progress;
+  for (const Transition& transition : loop) progress.add(known_.effect(transition).progress);
+  std::uint64_t times = std::min(std::min(end - cycle, refresh_left_) / progress.cycles,
+                                 (place_.end - column_ + 3) / (4 * loop.size()));
+  if (progress.words != 0) times = std::min(times, most_words() / progress.words);
+  const std::uint64_t at_once = conflicts() == nullptr ? times : 1;  // a recorder hears them in their order
+  for (; times > 0; times -= at_once) {
+    for (const Transition& transition : loop) follow(transition, cycle, at_once);
+  }
+  loop_.most = 0;
 }
 
 // Tells the recorder of conflicts what happens in a transition from `cycle` on.
@@ -465,6 +496,7 @@ void FastForward::set_state(std::uint64_t cycle) {
   state_words_.push_back(layout_->number << 32U | kinds);
   state_words_.push_back(arbitration().shared());
   state_ = known_.number_of(state_words_, [this] { return mask_of_state(); });
+  loop_.most = 0;
   set_refresh_left(cycle);
 }
 

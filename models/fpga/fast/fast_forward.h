@@ -86,6 +86,16 @@ class FastForward : public CoreStepper {
     Progress begin;
     CoreControl::Counts counts;
   };
+  // Transitions that were followed one after the other from a state on, at one place. Where they lead back to
+  // this state, they come again.
+  struct Loop {
+    static constexpr std::size_t kMost = 16;  // transitions
+
+    StateNumber from = 0;
+    std::uint64_t place = 0;  // its number
+    std::vector<Transition> transitions;
+    std::size_t most = 0;  // so many transitions may follow `from`; 0: another state is taken
+  };
   // The place of a slot that the pixel port has handled, with the number of slots before it.
   struct Handled {
     std::uint64_t slots = 0;
@@ -100,6 +110,7 @@ class FastForward : public CoreStepper {
   std::optional<Transition> find(std::uint64_t cycle, HostRequests host, std::uint64_t most_cycles);
   std::uint64_t times_alike(const Transition& transition, std::uint64_t most_cycles) const;
   void follow(const Transition& transition, std::uint64_t& cycle, std::uint64_t times);
+  void follow_loop(const Transition& last, std::uint64_t& cycle, std::uint64_t end);
   void replay(const Transition& transition, std::uint64_t cycle, std::uint64_t times) const;
   void catch_up(std::uint64_t cycle);
   std::uint64_t step_group(std::uint64_t cycle, std::uint64_t end);
@@ -155,6 +166,7 @@ class FastForward : public CoreStepper {
   // Whether the state before the next cycle is known, and a group is left. The others are valid then.
   bool can_follow_ = false;
   StateNumber state_ = 0;
+  Loop loop_;
   std::uint64_t column_ = 0;        // of the matcher
   std::uint64_t group_end_ = 0;     // column
   std::uint64_t consumed_ = 0;      // consume-cycles of the frame

@@ -18,9 +18,10 @@ constexpr unsigned kPartBit = 32;
 
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column) {
   const bool of_results = part.group == kResultGroup;
-  // Before the first results the number of the strip is negative, and grows with each strip. The origin must
-  // not move there.
-  const std::int64_t row = of_results ? std::max<std::int64_t>(0, geometry.first_row_at(true, column))
+  // Before the first results the number of the strip is negative, and at the end of the frame it is one too
+  // many. The origin must not move there: no row of sdram does.
+  const std::int64_t last = (geometry.height - 1) / geometry.rows * geometry.rows;
+  const std::int64_t row = of_results ? std::clamp<std::int64_t>(geometry.first_row_at(true, column), 0, last)
                                       : geometry.first_row_at(false, column);
   return floor_divide(part.word_of(row), part.turn()) * part.internal_banks;
 }

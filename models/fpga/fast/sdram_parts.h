@@ -42,7 +42,7 @@ struct SdramPart {
 
 // The row of the sdram from which the rows of a part are counted at a column of the matcher: a row of
 // internal bank 0, less than a turn() before the first row of the strip. Before the first results it is that
-// of strip 0.
+// of strip 0, behind the last ones that of the last strip.
 std::int64_t origin_row(const FrameGeometry& geometry, const SdramPart& part, std::uint64_t column);
 
 // Those of the buffers of a frame. `timings`: [bank], null for any other kind.
