@@ -131,8 +131,8 @@ void Aside::remove_if_empty() noexcept {
 Aside::~Aside() {
   std::error_code ignored;
   if (!is_there(path_ / "earlier") && !fs::remove(path_, ignored)) fs::remove_all(path_, ignored);
+  remove_if_empty();  // before the Remover ends, so that a kill leaves no empty parent
   remover_.reset();
-  remove_if_empty();
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -17,6 +17,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProbe = "probe";
 
+bool is_no_folder(fs::file_type type) {
+  return type != fs::file_type::not_found && type != fs::file_type::directory;
+}
+
 // Moves the entries that are there. An entry that `to` already has is an error.
 void move_all(const std::vector<fs::path>& names, const fs::path& from, const fs::path& to) {
   for (const fs::path& name : names) {
@@ -34,8 +38,11 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
   if (const auto problem = result_folder_problem(content_.mark == kResultMark ? dir_ : aside()))
     refuse(*problem);
   attempt("cannot be written to", [this] {
-    if (is_there(dir_) && !fs::is_directory(dir_)) refuse("not a folder");
-    if (is_there(aside()) && !is_folder(aside()))
+    // One look at each: meanwhile the Remover of a killed process may remove them.
+    const fs::file_type at_dir = fs::symlink_status(dir_).type();
+    if (at_dir == fs::file_type::symlink ? !fs::is_directory(dir_) : is_no_folder(at_dir))
+      refuse("not a folder");
+    if (is_no_folder(fs::symlink_status(aside()).type()))
       refuse(fmt::format("holds '{}', which is no folder", content_.aside));
     aside_.emplace(aside(), [this](const fs::path& entry) { check_left(entry); });
     repair();

@@ -16,9 +16,10 @@ UNEQUAL = sets(*(f"ssram.banks.bank{number}={{words: {2**20 - number}}}" for num
 @program.slow
 class LongWork(ProgramTest):
     def interrupted(self, *arguments):
-        """Once the board itself and some changes of it are simulated: standard output, and what is kept."""
+        """Once it is announced, and some changes are simulated: standard output, and what is kept."""
         terminal = Terminal(arguments, columns=200)
-        status, out = terminal.interrupt(r"\r([3-9]|\d\d)/\d+ boards simulated, ", signal.SIGINT)
+        status, out = terminal.interrupt(r"(?s)boards are simulated.*\r([3-9]|\d\d)/\d+ boards simulated, ",
+                                         signal.SIGINT)
         self.assertEqual(status, 130)
         self.assertRegex(terminal.text, r"\d+ boards are simulated, each for 42 frames, cycle by cycle b")
         return out, re.search(r"note: interrupted: (\d+ of \d+ changes were simulated)", terminal.text)[1]
