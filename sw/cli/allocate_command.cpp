@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures/bounds.h"
 #include "sw/cli/allocation_report.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/config/tables.h"
+#include "platform/figures/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/text_forms.h"

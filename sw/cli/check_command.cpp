@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
+#include "platform/figures/bounds.h"
 #include "platform/yaml/yaml_tree.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"

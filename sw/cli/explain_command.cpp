@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "platform/bounds.h"
 #include "platform/config/board_area.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/explore/store/store.h"

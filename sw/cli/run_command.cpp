@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "models/binder.h"
-#include "platform/bounds.h"
-#include "platform/preloaded_system.h"
+#include "platform/assembly/preloaded_system.h"
+#include "platform/figures/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/aside.h"

@@ -10,7 +10,7 @@
 #include "models/fpga/register_map.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/device_map.h"
+#include "platform/config/device_map.h"
 
 namespace stereotlm::driver {
 namespace {

@@ -12,7 +12,7 @@
 #include "models/host/program.h"
 #include "models/kernels/joint_table.h"
 #include "platform/config/board_config.h"
-#include "platform/timeline_records.h"
+#include "platform/records/timeline_records.h"
 
 // The program on the host (contract section 3). It uses only host::HostBus, so that it runs on the CPU of the
 // model and could run on a real machine.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform/config/board_yaml.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/stats/run_comparison.h"
 
 namespace stereotlm::report {

@@ -14,7 +14,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/config/board_area.h"
-#include "platform/figures.h"
+#include "platform/figures/derived_figures.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "platform/bounds.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "platform/figures/bounds.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/store/store.h"
 #include "sw/explore/sweep/sweep.h"

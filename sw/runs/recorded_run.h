@@ -9,7 +9,7 @@
 #include "models/fpga/record/row_recorder.h"
 #include "models/kernels/gray_image.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/process/child.h"
 #include "sw/process/problems.h"
 #include "sw/runs/progress.h"

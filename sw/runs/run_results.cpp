@@ -10,7 +10,7 @@
 #include "calib/calibration.h"
 #include "calib/depth.h"
 #include "calib/png.h"
-#include "platform/conflicts.h"
+#include "platform/records/conflicts.h"
 #include "sw/files/text_forms.h"
 #include "sw/media/encode.h"
 #include "sw/process/client.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/files/output_folder.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/simulation/simulation.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/process/child.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/bounds.h"
 #include "platform/config/board_config.h"
 #include "platform/config/board_keys.h"
-#include "platform/statistics.h"
+#include "platform/figures/bounds.h"
+#include "platform/figures/statistics.h"
 #include "sw/stats/accuracy.h"
 
 namespace stereotlm::stats {

@@ -8,10 +8,10 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/memory/bank_arbiter.h"
-#include "platform/bounds.h"
-#include "platform/computer_parts.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/figures.h"
+#include "platform/config/computer_parts.h"
+#include "platform/figures/bounds.h"
+#include "platform/figures/derived_figures.h"
 #include "sw/files/text_forms.h"
 #include "sw/stats/stats_fields.h"
 #include "sw/stats/stats_json.h"

@@ -6,7 +6,7 @@
 
 #include "models/fpga/record/conflict_recorder.h"
 #include "platform/config/board_config.h"
-#include "platform/timeline_records.h"
+#include "platform/records/timeline_records.h"
 
 namespace stereotlm::stats {
 

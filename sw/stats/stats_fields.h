@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "models/area/area.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/stats/accuracy.h"
 #include "sw/stats/json_fields.h"
 

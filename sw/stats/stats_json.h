@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/stats/accuracy.h"
 
 namespace stereotlm::stats {

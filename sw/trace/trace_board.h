@@ -16,7 +16,7 @@
 #include "models/fpga/record/conflict_recorder.h"
 #include "platform/config/board_config.h"
 #include "platform/config/board_keys.h"
-#include "platform/trace_records.h"
+#include "platform/records/trace_records.h"
 
 namespace stereotlm::trace {
 

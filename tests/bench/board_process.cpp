@@ -9,7 +9,7 @@
 
 #include "models/binder.h"
 #include "platform/config/board_yaml.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/runs/simulation/simulation.h"
 
 namespace stereotlm::bench {

@@ -5,8 +5,8 @@
 
 #include "models/fpga/record/core_cycle.h"
 #include "platform/config/board_config.h"
-#include "platform/timeline_records.h"
-#include "platform/trace_records.h"
+#include "platform/records/timeline_records.h"
+#include "platform/records/trace_records.h"
 #include "sw/trace/trace_sink.h"
 
 namespace stereotlm::test {

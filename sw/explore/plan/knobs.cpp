@@ -13,11 +13,11 @@
 
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
-#include "platform/bounds.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_reader.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures/bounds.h"
 #include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {

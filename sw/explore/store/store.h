@@ -13,7 +13,7 @@
 
 #include "platform/config/board_config.h"
 #include "platform/config/board_yaml.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/files/aside.h"
 #include "sw/sqlite/database.h"
 

@@ -5,7 +5,7 @@
 
 #include "models/capture/camera_timing.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/figures.h"
+#include "platform/figures/derived_figures.h"
 
 namespace stereotlm::report {
 namespace {

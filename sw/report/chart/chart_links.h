@@ -5,7 +5,7 @@
 
 #include "models/fpga/core_ports.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::report {
 

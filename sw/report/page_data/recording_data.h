@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::report {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "models/kernel_time.h"
-#include "platform/computer.h"
+#include "platform/assembly/computer.h"
 
 namespace stereotlm::runs {
 namespace {

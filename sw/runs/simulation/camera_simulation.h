@@ -8,10 +8,10 @@
 
 #include "models/binder.h"
 #include "models/capture/camera.h"
-#include "platform/bus_trace.h"
-#include "platform/collect.h"
-#include "platform/computer_view.h"
-#include "platform/timeline.h"
+#include "platform/assembly/computer_view.h"
+#include "platform/figures/collect.h"
+#include "platform/records/bus_trace.h"
+#include "platform/records/timeline.h"
 #include "sw/driver/stereo_driver.h"
 #include "sw/runs/simulation/simulation.h"
 

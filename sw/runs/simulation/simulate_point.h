@@ -8,7 +8,7 @@
 #include "models/kernels/gray_image.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
 

@@ -9,8 +9,8 @@
 
 #include "models/clock.h"
 #include "models/kernel_time.h"
-#include "platform/collect.h"
-#include "platform/preloaded_system.h"
+#include "platform/assembly/preloaded_system.h"
+#include "platform/figures/collect.h"
 #include "sw/runs/simulation/camera_simulation.h"
 
 namespace stereotlm::runs {

@@ -12,12 +12,12 @@
 #include "models/fpga/record/cycle_recorder.h"
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
-#include "platform/bus_trace.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "platform/conflicts.h"
-#include "platform/statistics.h"
-#include "platform/timeline_records.h"
+#include "platform/figures/statistics.h"
+#include "platform/records/bus_trace.h"
+#include "platform/records/conflicts.h"
+#include "platform/records/timeline_records.h"
 
 namespace stereotlm {
 class Binder;

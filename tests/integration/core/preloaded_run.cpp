@@ -5,8 +5,8 @@
 #include <systemc>
 
 #include "models/testing/monitoring_binder.h"
-#include "platform/collect.h"
-#include "platform/preloaded_system.h"
+#include "platform/assembly/preloaded_system.h"
+#include "platform/figures/collect.h"
 
 namespace stereotlm::test {
 namespace {

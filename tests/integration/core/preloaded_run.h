@@ -9,8 +9,8 @@
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "platform/conflicts.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
+#include "platform/records/conflicts.h"
 #include "tests/support/plain_cycle_loop.h"
 
 namespace stereotlm::test {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "models/memory/arbitration_policies.h"
-#include "platform/bounds.h"
+#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
-#include "platform/conflicts.h"
-#include "platform/preloaded_system.h"
+#include "platform/figures/bounds.h"
+#include "platform/records/conflicts.h"
 #include "sw/stats/record_csv.h"
 #include "tests/integration/core/preloaded_run.h"
 #include "tests/support/board_of_random.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "models/testing/monitoring_binder.h"
-#include "platform/collect.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures/collect.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "tests/support/noise_pairs.h"
 

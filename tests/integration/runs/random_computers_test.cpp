@@ -18,8 +18,8 @@
 
 #include "models/host/frame_source.h"
 #include "models/testing/monitoring_binder.h"
-#include "platform/bounds.h"
 #include "platform/config/board_yaml.h"
+#include "platform/figures/bounds.h"
 #include "sw/explore/plan/points.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/camera_simulation.h"

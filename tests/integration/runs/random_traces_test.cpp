@@ -22,7 +22,7 @@
 #include "models/kernel_time.h"
 #include "models/testing/probing_binder.h"
 #include "platform/config/board_yaml.h"
-#include "platform/conflicts.h"
+#include "platform/records/conflicts.h"
 #include "sw/runs/simulation/simulation.h"
 #include "sw/sqlite/database.h"
 #include "sw/trace/trace.h"

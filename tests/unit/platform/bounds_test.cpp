@@ -1,4 +1,4 @@
-#include "platform/bounds.h"
+#include "platform/figures/bounds.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <optional>
 #include <ostream>
 
-#include "platform/preloaded_system.h"
+#include "platform/assembly/preloaded_system.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {

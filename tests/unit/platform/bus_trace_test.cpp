@@ -1,6 +1,6 @@
 // The trace of buses and queues, with hand-made reports of the blocks. Random computers compare traces with
 // the plain loop over events, which has no targets.
-#include "platform/bus_trace.h"
+#include "platform/records/bus_trace.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "platform/computer_parts.h"
+#include "platform/config/computer_parts.h"
 
 namespace stereotlm::platform {
 namespace {

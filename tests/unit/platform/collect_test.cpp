@@ -1,4 +1,4 @@
-#include "platform/collect.h"
+#include "platform/figures/collect.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "platform/bounds.h"
 #include "platform/config/board_area.h"
+#include "platform/figures/bounds.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "platform/bounds.h"
+#include "platform/figures/bounds.h"
 #include "tests/support/plain_clock.h"
 
 namespace stereotlm::platform {

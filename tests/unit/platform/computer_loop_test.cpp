@@ -1,6 +1,6 @@
 // The event loop of the computer, without the kernel: where it stops, and the order of events of one time.
 // Random computers compare its figures with the plain event loop.
-#include "platform/computer_loop.h"
+#include "platform/loop/computer_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include "models/fpga/register_map.h"
 #include "models/kernels/gray_image.h"
 #include "models/pci/bridge_registers.h"
-#include "platform/computer_parts.h"
+#include "platform/config/computer_parts.h"
 #include "tests/unit/platform/computer_registers.h"
 #include "tests/unit/platform/preloaded_run.h"
 

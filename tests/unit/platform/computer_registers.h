@@ -5,7 +5,7 @@
 
 #include "models/fpga/register_map.h"
 #include "models/pci/bridge_registers.h"
-#include "platform/device_map.h"
+#include "platform/config/device_map.h"
 
 // Addresses of the computer for its tests.
 namespace stereotlm::platform::testing {

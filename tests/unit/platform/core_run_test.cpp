@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
-#include "platform/preloaded_system.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/unit/platform/preloaded_run.h"
 

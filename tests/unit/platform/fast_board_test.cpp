@@ -1,6 +1,6 @@
 // The board without modules and without the kernel. Random computers compare its figures with the plain loop,
 // and fast_computer_test.cpp has what it refuses.
-#include "platform/fast_board.h"
+#include "platform/loop/fast_board.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // FastComputer beside Computer, with the same program: every access and every interrupt at the same time. One
 // computer in a process.
-#include "platform/fast_computer.h"
+#include "platform/loop/fast_computer.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 #include "models/kernel_time.h"
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
-#include "platform/computer.h"
+#include "platform/assembly/computer.h"
 #include "tests/support/fork.h"
 #include "tests/support/random_board.h"
 #include "tests/unit/platform/computer_registers.h"

@@ -4,8 +4,8 @@
 #include <systemc>
 
 #include "models/testing/monitoring_binder.h"
-#include "platform/collect.h"
-#include "platform/preloaded_system.h"
+#include "platform/assembly/preloaded_system.h"
+#include "platform/figures/collect.h"
 
 namespace stereotlm::platform::testing {
 

@@ -1,5 +1,5 @@
 // The recorder, told by hand what the blocks do. random_computers_test.cpp has whole computers.
-#include "platform/timeline.h"
+#include "platform/records/timeline.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

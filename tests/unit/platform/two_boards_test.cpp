@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "platform/bounds.h"
+#include "platform/figures/bounds.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform::testing {

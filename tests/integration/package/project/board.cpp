@@ -1,7 +1,7 @@
 // A whole board of stereotlm in somebody else's program.
-#include <stereotlm/platform/collect.h>
+#include <stereotlm/platform/assembly/preloaded_system.h>
 #include <stereotlm/platform/config/board_yaml.h>
-#include <stereotlm/platform/preloaded_system.h>
+#include <stereotlm/platform/figures/collect.h>
 
 #include <cstdio>
 

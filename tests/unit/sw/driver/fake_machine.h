@@ -13,7 +13,7 @@
 #include "models/fpga/register_map.h"
 #include "models/host/program.h"
 #include "models/pci/bridge_registers.h"
-#include "platform/device_map.h"
+#include "platform/config/device_map.h"
 
 namespace stereotlm::driver {
 

@@ -12,7 +12,7 @@
 #include "models/fpga/core_control.h"
 #include "models/memory/arbitration.h"
 #include "platform/config/board_yaml.h"
-#include "platform/conflicts.h"
+#include "platform/records/conflicts.h"
 
 namespace stereotlm::report {
 namespace {

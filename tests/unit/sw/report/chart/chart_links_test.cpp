@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
-#include "platform/preloaded_system.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/stats/stats_json.h"
 #include "tests/support/board_of_random.h"

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "platform/config/buffer_layout.h"
-#include "platform/figures.h"
+#include "platform/figures/derived_figures.h"
 #include "sw/report/chart/chart_text.h"
 #include "tests/support/board_of_random.h"
 

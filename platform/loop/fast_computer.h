@@ -12,9 +12,9 @@
 #include "models/host/program.h"
 #include "models/interrupt.h"
 #include "models/pci/pci_slot_if.h"
-#include "platform/computer_loop.h"
-#include "platform/computer_view.h"
+#include "platform/assembly/computer_view.h"
 #include "platform/config/board_config.h"
+#include "platform/loop/computer_loop.h"
 
 namespace stereotlm::platform {
 

@@ -1,4 +1,4 @@
-#include "platform/conflicts.h"
+#include "platform/records/conflicts.h"
 
 #include <algorithm>
 #include <numeric>

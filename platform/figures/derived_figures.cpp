@@ -1,4 +1,4 @@
-#include "platform/figures.h"
+#include "platform/figures/derived_figures.h"
 
 #include <algorithm>
 #include <map>

@@ -17,8 +17,8 @@
 #include "models/memory/arbitration.h"
 #include "models/memory/direct_banks.h"
 #include "models/memory/ram.h"
-#include "platform/collect.h"
 #include "platform/config/board_config.h"
+#include "platform/figures/collect.h"
 
 namespace stereotlm::platform {
 

@@ -1,4 +1,4 @@
-#include "platform/computer_loop.h"
+#include "platform/loop/computer_loop.h"
 
 #include <algorithm>
 #include <cstring>

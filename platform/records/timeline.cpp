@@ -1,9 +1,9 @@
-#include "platform/timeline.h"
+#include "platform/records/timeline.h"
 
 #include <algorithm>
 
 #include "models/pci/bridge_registers.h"
-#include "platform/audit.h"
+#include "platform/figures/audit.h"
 
 namespace stereotlm::platform {
 namespace {

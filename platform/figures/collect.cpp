@@ -1,12 +1,12 @@
-#include "platform/collect.h"
+#include "platform/figures/collect.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "platform/audit.h"
-#include "platform/computer_parts.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/config/computer_parts.h"
+#include "platform/figures/audit.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -174,29 +174,6 @@ BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitratio
   for (std::size_t lane = 0; lane < control.lanes().size(); ++lane)
     counters.consumed[fpga::index_of(control.side_of(lane))] += control.lane(lane).consumed();
   return counters;
-}
-
-BoardCounters counters_of(const Board& board) {
-  const fpga::StereoCore& core = board.core;
-  const fpga::CoreDatapath& datapath = core.datapath();
-  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbitration());
-  for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
-    const memory::SsramBank::Stats& stats = board.banks[bank].stats();
-    counters.banks[bank].accesses +=
-        stats.reads + stats.writes + stats.errors + core.crossbar().direct_accesses(bank);
-  }
-  for (const fpga::Side side : fpga::kSides)
-    counters.issued[fpga::index_of(side)] += datapath.sequencer().slots(side);
-  counters.packed_words += datapath.result_packer().words();
-  counters.written_words += datapath.result_writer().writes();
-  return counters;
-}
-
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
-                              const BoardCounters& counters) {
-  const bool is_cycle = fpga::steps_cycles(board.core.fidelity());
-  return collect_statistics(config, frame_accesses(config, tables), is_cycle ? "cycle" : "fast",
-                            board.core.frames().frame_cycles(), counters);
 }
 
 Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& accesses,

@@ -1,4 +1,4 @@
-#include "platform/preloaded_system.h"
+#include "platform/assembly/preloaded_system.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include "models/fpga/access_pattern.h"
 #include "models/fpga/frame_run.h"
 #include "models/memory/arbitration.h"
-#include "platform/collect.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures/collect.h"
 
 namespace stereotlm::platform {
 namespace {

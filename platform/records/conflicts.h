@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "models/fpga/record/conflict_recorder.h"
-#include "platform/audit.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
-#include "platform/trace_records.h"
+#include "platform/figures/audit.h"
+#include "platform/figures/statistics.h"
+#include "platform/records/trace_records.h"
 
 namespace stereotlm::platform {
 

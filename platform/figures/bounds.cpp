@@ -1,4 +1,4 @@
-#include "platform/bounds.h"
+#include "platform/figures/bounds.h"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 
 #include "models/binder.h"
 #include "models/host/ideal_host.h"
-#include "platform/board.h"
+#include "platform/assembly/board.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 

@@ -12,12 +12,11 @@
 #include "models/memory/arbitration.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
-#include "platform/board.h"
-#include "platform/bounds.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "platform/figures.h"
-#include "platform/statistics.h"
+#include "platform/figures/bounds.h"
+#include "platform/figures/derived_figures.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 
@@ -38,25 +37,16 @@ struct BoardCounters {
   std::uint64_t written_words = 0;          // result words that were written
 };
 
-BoardCounters counters_of(const Board& board);  // of all finished frames
-// The counters of a core without stages and without a host: all its frames work directly on memory.
+// Of a core without stages and without a host: all its frames work directly on memory.
+// Those of a Board are in platform/assembly/board.h.
 BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration);
 
 // Returns the figures of the frames that `counters` cover; if there are any, also core_bound() of the board.
-// Checks the identities of contract section 6; Statistics::failed lists those that do not hold. `counters`
-// were taken from this board, now or earlier.
-Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
-                              const BoardCounters& counters);
-
-// The same for a core that ran without a board. `frame_cycles`: the length of each frame.
+// Checks the identities of contract section 6; Statistics::failed lists those that do not hold.
+// `frame_cycles`: the length of each frame.
 Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& accesses,
                               const std::string& fidelity, const std::vector<std::uint64_t>& frame_cycles,
                               const BoardCounters& counters);
-
-// The figures of all finished frames. To be called between two frames.
-inline Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board) {
-  return collect_statistics(config, tables, board, counters_of(board));
-}
 
 // Counters of a computer's modules up to now. They must be taken while the core runs no frame.
 struct ComputerCounters {

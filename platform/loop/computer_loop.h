@@ -12,10 +12,10 @@
 #include "models/pci/pci_bus_control.h"
 #include "models/pci/traffic_control.h"
 #include "models/time_ps.h"
-#include "platform/computer_parts.h"
-#include "platform/computer_view.h"
+#include "platform/assembly/computer_view.h"
 #include "platform/config/board_config.h"
-#include "platform/fast_board.h"
+#include "platform/config/computer_parts.h"
+#include "platform/loop/fast_board.h"
 
 namespace stereotlm::platform {
 

@@ -1,6 +1,6 @@
-#include "platform/computer.h"
+#include "platform/assembly/computer.h"
 
-#include "platform/computer_parts.h"
+#include "platform/config/computer_parts.h"
 
 namespace stereotlm::platform {
 

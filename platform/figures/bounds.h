@@ -11,7 +11,7 @@
 #include "models/fpga/core_ports.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
-#include "platform/statistics.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "platform/audit.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
+#include "platform/figures/audit.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 

@@ -1,4 +1,4 @@
-#include "platform/bus_trace.h"
+#include "platform/records/bus_trace.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "models/memory/memory_config.h"
-#include "platform/computer_parts.h"
+#include "platform/config/computer_parts.h"
 
 namespace stereotlm::platform {
 namespace {

@@ -13,10 +13,10 @@
 #include "models/clock.h"
 #include "models/fpga/frame_run.h"
 #include "models/pci/dma_channel.h"
-#include "platform/collect.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/timeline_records.h"
+#include "platform/figures/collect.h"
+#include "platform/records/timeline_records.h"
 
 namespace stereotlm::platform {
 

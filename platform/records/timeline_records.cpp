@@ -1,7 +1,7 @@
-#include "platform/timeline_records.h"
+#include "platform/records/timeline_records.h"
 
 #include "models/fpga/core_ports.h"
-#include "platform/computer_parts.h"
+#include "platform/config/computer_parts.h"
 
 namespace stereotlm::platform {
 

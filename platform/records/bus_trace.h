@@ -19,7 +19,7 @@
 #include "models/pci/pci_bus_control.h"
 #include "models/time_ps.h"
 #include "platform/config/board_config.h"
-#include "platform/trace_records.h"
+#include "platform/records/trace_records.h"
 
 namespace stereotlm::platform {
 

@@ -1,4 +1,4 @@
-#include "platform/fast_board.h"
+#include "platform/loop/fast_board.h"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,9 @@
 #include "models/memory/ssram_bank.h"
 #include "platform/config/board_config.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/config/tables.h"
+#include "platform/figures/collect.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 
@@ -16,25 +19,20 @@ class Board : public sc_core::sc_module {
  public:
   // Throws std::invalid_argument if the board has problems.
   Board(const sc_core::sc_module_name& name, const BoardConfig& config, Binder& binder,
-        fpga::Fidelity fidelity = fpga::Fidelity::kCycle)
-      : sc_module(name), core("core", stereo_core_config(require_valid(config), fidelity), binder) {
-    banks.init(config.banks.size(), [&config](const char* /*numbered*/, std::size_t bank) {
-      return new memory::SsramBank(("ssram_" + config.banks[bank].name).c_str(), ssram_configs(config)[bank]);
-    });
-    for (std::size_t bank = 0; bank < banks.size(); ++bank)
-      binder.bind(core.banks[bank], banks[bank].port, "crossbar_to_" + config.banks[bank].name);
-  }
+        fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
   fpga::StereoCore core;                        // with the sockets of the board
   sc_core::sc_vector<memory::SsramBank> banks;  // in the order of the configuration
-
- private:
-  static fpga::StereoCoreConfig stereo_core_config(const BoardConfig& board, fpga::Fidelity fidelity) {
-    return {core_config(board),
-            {board.fpga.arbiter, ssram_configs(board)},
-            {board.bridge.local_clock_mhz, buffer_ranges(board)},
-            fidelity};
-  }
 };
+
+// Of all finished frames. To be called between two frames.
+BoardCounters counters_of(const Board& board);
+
+// The figures of the frames that `counters` cover, as collect_statistics() in platform/figures/collect.h.
+// `counters` were taken from this board, now or earlier.
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board,
+                              const BoardCounters& counters);
+// The figures of all finished frames. To be called between two frames.
+Statistics collect_statistics(const BoardConfig& config, const Tables& tables, const Board& board);
 
 }  // namespace stereotlm::platform

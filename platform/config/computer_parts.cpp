@@ -1,4 +1,4 @@
-#include "platform/computer_parts.h"
+#include "platform/config/computer_parts.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include "models/fpga/local_bus_control.h"
 #include "models/pci/bridge_registers.h"
 #include "platform/config/buffer_layout.h"
-#include "platform/device_map.h"
+#include "platform/config/device_map.h"
 
 namespace stereotlm::platform {
 

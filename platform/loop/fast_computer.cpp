@@ -1,10 +1,10 @@
-#include "platform/fast_computer.h"
+#include "platform/loop/fast_computer.h"
 
 #include <utility>
 
 #include "models/kernel_time.h"
-#include "platform/computer.h"
-#include "platform/device_map.h"
+#include "platform/assembly/computer.h"
+#include "platform/config/device_map.h"
 
 namespace stereotlm::platform {
 

@@ -15,10 +15,10 @@
 #include "models/pci/pci_bridge.h"
 #include "models/pci/pci_bus.h"
 #include "models/pci/traffic_generator.h"
-#include "platform/board.h"
-#include "platform/computer_view.h"
+#include "platform/assembly/board.h"
+#include "platform/assembly/computer_view.h"
 #include "platform/config/board_config.h"
-#include "platform/device_map.h"
+#include "platform/config/device_map.h"
 
 namespace stereotlm::platform {
 

@@ -1,4 +1,4 @@
-#include "platform/computer_view.h"
+#include "platform/assembly/computer_view.h"
 
 #include <utility>
 

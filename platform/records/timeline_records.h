@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "models/clock.h"
-#include "platform/audit.h"
 #include "platform/config/board_config.h"
-#include "platform/statistics.h"
+#include "platform/figures/audit.h"
+#include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 

@@ -1,4 +1,4 @@
-#include "platform/audit.h"
+#include "platform/figures/audit.h"
 
 #include <fmt/format.h>
 

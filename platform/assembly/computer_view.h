@@ -9,9 +9,9 @@
 #include "models/fpga/local_bus_control.h"
 #include "models/pci/bridge_control.h"
 #include "models/pci/pci_bus_control.h"
-#include "platform/bus_trace.h"
-#include "platform/collect.h"
-#include "platform/timeline.h"
+#include "platform/figures/collect.h"
+#include "platform/records/bus_trace.h"
+#include "platform/records/timeline.h"
 
 namespace stereotlm::platform {
 
