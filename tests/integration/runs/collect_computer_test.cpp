@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/local_bus.h"
 #include "models/testing/monitoring_binder.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
