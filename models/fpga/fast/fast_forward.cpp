@@ -59,7 +59,7 @@ FastForward::FastForward(const CoreConfig& config, memory::Arbitration& arbitrat
       refreshing_banks_(count_refreshing_banks(arbitration)),
       open_rows_(control().geometry()),
       handled_(control().lanes().size()),
-      known_(1 + refreshing_banks_ + words_of_accesses(control().geometry(), slots_ahead_)),
+      known_(1 + refreshing_banks_),
       around_(1 + refreshing_banks_ + words_of_accesses(control().geometry(), slots_ahead_)) {
   for (std::size_t lane = 0; lane < handled_.size(); ++lane)
     handled_[lane].slot = control().lane(lane).first_slot();
@@ -75,6 +75,7 @@ void FastForward::start_direct_frame(const AccessPatterns& patterns) {
     varying_[index_of(side)] = varies ? &pattern : nullptr;
   }
   std::fill(around_.begin(), around_.end(), 0);
+  if (accesses_vary() && known_.words() < around_.size()) known_.clear(around_.size());
   find_layout();
 }
 
@@ -168,10 +169,10 @@ void FastForward::route_host(std::uint64_t cycle, const Route& route) {
 bool FastForward::skip_transition(std::uint64_t& cycle, std::uint64_t end) {
   if (!can_follow_ || cycle >= end) return false;
   around_[0] = place_.number;
-  if (varying_[0] != nullptr || varying_[1] != nullptr) set_accesses();
+  if (accesses_vary()) set_accesses();
   const std::uint64_t recorded = next_recorded(cycle);
   const std::uint64_t end_alone = std::min(host_.words == 0 ? end : std::min(end, host_.first), recorded);
-  if (end_alone > cycle) {
+  if (end_alone >= cycle + least_cycles()) {
     if (const auto found = find(cycle, {}, end_alone - cycle)) {
       const std::uint64_t times = times_alike(*found, end_alone - cycle);
       follow(*found, cycle, times);
@@ -191,25 +192,23 @@ bool FastForward::skip_transition(std::uint64_t& cycle, std::uint64_t end) {
 std::optional<FastForward::Transition> FastForward::find(std::uint64_t cycle, HostRequests host,
                                                          std::uint64_t most_cycles) {
   auto found = known_.find(state_, around_, host);
-  if (refresh_left_ != UINT64_MAX && (!found || known_.effect(*found).progress.cycles > refresh_left_)) {
+  if (refresh_left_ != UINT64_MAX && (!found || known_.progress(*found).cycles > refresh_left_)) {
     set_refreshes(cycle);
     found = known_.find(state_, around_, host);
     std::fill_n(around_.begin() + 1, refreshing_banks_, 0);
   }
   if (!found) return std::nullopt;
-  const Progress& progress = known_.effect(*found).progress;
+  const Progress& progress = known_.progress(*found);
   return progress.cycles <= most_cycles && progress.words <= most_words() ? found : std::nullopt;
 }
 
 // The known transition from `cycle` on in which the host requests host_, if it ends before `end`.
 std::optional<FastForward::Transition> FastForward::find_with_host(std::uint64_t cycle, std::uint64_t end) {
-  std::optional<HostRequests> requests = requests_of(host_, cycle);
+  const std::optional<HostRequests> requests = requests_of(host_, cycle);
   if (!requests) return std::nullopt;
-  auto found = find(cycle, *requests, end - cycle);
-  if (found) return found;
-  requests->words = HostRequests::kEndless;
-  found = find(cycle, *requests, end - cycle);
-  return found && known_.effect(*found).host.words < host_.words ? found : std::nullopt;
+  if (const auto found = find(cycle, *requests, end - cycle)) return found;
+  const auto found = find(cycle, {requests->first, HostRequests::kEndless, requests->route}, end - cycle);
+  return found && known_.host(*found).words < host_.words ? found : std::nullopt;
 }
 
 // The requests of these words from `cycle` on. Nothing if the cache cannot hold them.
@@ -235,13 +234,13 @@ std::uint64_t FastForward::next_recorded(std::uint64_t cycle) const {
 // state, and its surroundings stay alike. Without waits this is almost a whole strip.
 std::uint64_t FastForward::times_alike(const Transition& transition, std::uint64_t most_cycles) const {
   if (transition.next != state_) return 1;
-  const Progress& progress = known_.effect(transition).progress;
+  const Progress& progress = known_.progress(transition);
   std::uint64_t most =
       std::min(std::min(most_cycles, refresh_left_) / progress.cycles, (place_.end - column_ + 3) / 4);
   if (progress.words != 0) most = std::min(most, most_words() / progress.words);
   most = std::max<std::uint64_t>(most, 1);
   const FrameGeometry& geometry = control().geometry();
-  if ((varying_[0] == nullptr && varying_[1] == nullptr) || column_ >= geometry.columns) return most;
+  if (!accesses_vary() || column_ >= geometry.columns) return most;
   if (group_end_ >= geometry.columns) return 1;
   most = std::min(most, 1 + (geometry.columns - group_end_) / 4);
   const std::size_t words = (around_.size() - 1 - refreshing_banks_) / 2;
@@ -267,13 +266,13 @@ std::uint64_t FastForward::times_alike(const Transition& transition, std::uint64
 // Follows a transition from `cycle` on, and sets `cycle` to the next cycle.
 void FastForward::follow(const Transition& transition, std::uint64_t& cycle, std::uint64_t times) {
   if (conflicts() != nullptr) replay(transition, cycle, times);
-  const TransitionCache::Effect& effect = known_.effect(transition);
-  const Progress& progress = effect.progress;
+  const Progress& progress = known_.progress(transition);
+  const HostGrants& host = known_.host(transition);
   const std::uint64_t cycles = progress.cycles * times;
-  if (effect.host.requests != 0) {
-    if (effect.host.words != 0) served_.last_cycle = cycle + effect.host.cycles - 1;
-    served_.words += effect.host.words;
-    host_.words -= effect.host.words;
+  if (host.requests != 0) {
+    if (host.words != 0) served_.last_cycle = cycle + host.cycles - 1;
+    served_.words += host.words;
+    host_.words -= host.words;
     host_.first = cycle + cycles;
   }
   known_.follow(transition, times);
@@ -307,7 +306,7 @@ void FastForward::follow(const Transition& transition, std::uint64_t& cycle, std
 // To be called behind a transition that was followed once, `last`. If it closes a loop, follows the loop as
 // often as it comes again before `end`. Contended ports have such loops of a few groups.
 void FastForward::follow_loop(const Transition& last, std::uint64_t& cycle, std::uint64_t end) {
-  if (!can_follow_ || varying_[0] != nullptr || varying_[1] != nullptr) return;
+  if (!can_follow_ || accesses_vary()) return;
   std::vector<Transition>& loop = loop_.transitions;
   const bool is_open = loop_.most != 0 && place_.number == loop_.place;
   if (is_open) loop.push_back(last);
@@ -320,7 +319,7 @@ void FastForward::follow_loop(const Transition& last, std::uint64_t& cycle, std:
   }
   if (state_ != loop_.from) return;
   Progress progress;
-  for (const Transition& transition : loop) progress.add(known_.effect(transition).progress);
+  for (const Transition& transition : loop) progress.add(known_.progress(transition));
   std::uint64_t times = std::min(std::min(end - cycle, refresh_left_) / progress.cycles,
                                  (place_.end - column_ + 3) / (4 * loop.size()));
   if (progress.words != 0) times = std::min(times, most_words() / progress.words);
@@ -333,7 +332,7 @@ void FastForward::follow_loop(const Transition& last, std::uint64_t& cycle, std:
 
 // Tells the recorder of conflicts what happens in a transition from `cycle` on.
 void FastForward::replay(const Transition& transition, std::uint64_t cycle, std::uint64_t times) const {
-  const Progress& progress = known_.effect(transition).progress;
+  const Progress& progress = known_.progress(transition);
   const bool ends_group = consumed_ + progress.consumed == group_end_ * cycles_per_column_;
   for (; times > 0; --times) {
     cycle += progress.cycles;
@@ -389,7 +388,7 @@ std::uint64_t FastForward::step_group(std::uint64_t cycle, std::uint64_t end) {
   } while (!burst_ends && !completed_group() && cycle < end && !control().frame_done());
   if (!burst_ends && !completed_group()) return cycle;
   if (known_.is_full()) {
-    known_.clear();
+    known_.clear(known_.words());
     stepped.reset();
   }
   set_state(cycle);

@@ -108,6 +108,9 @@ class FastForward : public CoreStepper {
   bool skip_transition(std::uint64_t& cycle, std::uint64_t end);
   std::optional<Transition> find_with_host(std::uint64_t cycle, std::uint64_t end);
   std::optional<Transition> find(std::uint64_t cycle, HostRequests host, std::uint64_t most_cycles);
+  bool accesses_vary() const { return varying_[0] != nullptr || varying_[1] != nullptr; }
+  // To the end of the group: the cycles that the matcher consumes. Waits make them more.
+  std::uint64_t least_cycles() const { return group_end_ * cycles_per_column_ - consumed_; }
   std::uint64_t times_alike(const Transition& transition, std::uint64_t most_cycles) const;
   void follow(const Transition& transition, std::uint64_t& cycle, std::uint64_t times);
   void follow_loop(const Transition& last, std::uint64_t& cycle, std::uint64_t end);

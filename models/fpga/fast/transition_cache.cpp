@@ -1,6 +1,7 @@
 #include "models/fpga/fast/transition_cache.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace stereotlm::fpga {
 namespace {
@@ -41,14 +42,14 @@ std::size_t TransitionCache::EffectHash::operator()(const Effect& effect) const 
   return hash.value();
 }
 
-void TransitionCache::clear() {
+void TransitionCache::clear(std::size_t words) {
+  words_ = words;
+  key_.resize(1 + words);
   states_.clear();
-  last_found_.clear();
   masks_.clear();
   state_numbers_.clear();
   effects_.clear();
   effect_numbers_.clear();
-  followed_.clear();
   bank_uses_.clear();
   effects_followed_.clear();
   transitions_ = 0;
@@ -61,8 +62,7 @@ std::uint32_t TransitionCache::number_of_effect(const Effect& effect,
   const auto [entry, is_new] =
       effect_numbers_.try_emplace(effect, static_cast<std::uint32_t>(effects_.size()));
   if (is_new) {
-    effects_.push_back(&entry->first);
-    followed_.push_back(0);
+    effects_.push_back({effect.progress, effect.host, 0, &entry->first});
     bank_uses_.push_back(arbitration.bank_uses(effect.arbitration));
   }
   return entry->second;
@@ -95,8 +95,7 @@ std::size_t TransitionCache::bucket_of_key() const {
 std::optional<TransitionCache::Transition> TransitionCache::find(StateNumber from, const Surroundings& around,
                                                                  HostRequests host) const {
   set_key(from, around, host);
-  std::size_t& bucket = last_found_[from];
-  if (!has_key(bucket)) bucket = bucket_of_key();
+  const std::size_t bucket = bucket_of_key();
   if (buckets_[bucket] == 0) return std::nullopt;
   const std::uint64_t transition = buckets_[bucket + key_.size()];
   return Transition{static_cast<StateNumber>(transition), static_cast<std::uint32_t>(transition >> 32U)};
@@ -127,13 +126,12 @@ void TransitionCache::double_buckets() {
 
 void TransitionCache::count_followed(CoreControl& control, memory::Arbitration& arbitration) {
   for (const std::uint32_t number : effects_followed_) {
-    const Effect& effect = *effects_[number];
-    const std::uint64_t times = followed_[number];
+    const Effect& effect = *effects_[number].effect;
+    const std::uint64_t times = std::exchange(effects_[number].followed, 0);
     control.add(effect.counts, times);
     control.count_host(false, (effect.host.requests - effect.host.words) * times);
     control.count_host(true, effect.host.words * times);
     arbitration.count_skipped(effect.arbitration, times);
-    followed_[number] = 0;
   }
   effects_followed_.clear();
 }

@@ -69,7 +69,7 @@ class TransitionCache {
   using State = memory::StateWords;
   using StateNumber = std::uint32_t;
 
-  // Words that determine a transition beside its state. All objects of a cache have the same number of words.
+  // Words that determine a transition beside its state. A cache looks at the first words() of them.
   using Surroundings = std::vector<std::uint64_t>;
 
   struct Effect {
@@ -88,8 +88,7 @@ class TransitionCache {
     std::uint32_t effect = 0;
   };
 
-  // `words`: of Surroundings.
-  explicit TransitionCache(std::size_t words) : words_(words), key_(1 + words) { clear(); }
+  explicit TransitionCache(std::size_t words) { clear(words); }
   TransitionCache(const TransitionCache&) = delete;  // effects are referred to
   TransitionCache& operator=(const TransitionCache&) = delete;
 
@@ -100,9 +99,8 @@ class TransitionCache {
     const auto [entry, is_new] = state_numbers_.try_emplace(state, static_cast<StateNumber>(states_.size()));
     if (is_new) {
       states_.push_back(&entry->first);
-      last_found_.push_back(0);
       const Surroundings words = mask();
-      masks_.insert(masks_.end(), words.begin(), words.end());
+      masks_.insert(masks_.end(), words.begin(), words.begin() + static_cast<std::ptrdiff_t>(words_));
     }
     return entry->second;
   }
@@ -112,17 +110,22 @@ class TransitionCache {
   // `arbitration`: the one that has counted the effect.
   void record(StateNumber from, const Surroundings& around, HostRequests host, StateNumber next,
               const Effect& effect, const memory::Arbitration& arbitration);
-  void clear();
+  std::size_t words() const { return words_; }
+  // Forgets all, and looks at so many words of Surroundings from now on.
+  void clear(std::size_t words);
   bool is_full() const { return transitions_ >= kMost || states_.size() >= kMostStates; }
 
-  const Effect& effect(const Transition& transition) const { return *effects_[transition.effect]; }
+  const Progress& progress(const Transition& transition) const {
+    return effects_[transition.effect].progress;
+  }
+  const HostGrants& host(const Transition& transition) const { return effects_[transition.effect].host; }
   // What the ports did at their banks in the transition.
   const std::vector<memory::BankUse>& bank_uses(const Transition& transition) const {
     return bank_uses_[transition.effect];
   }
   // Counts a transition as followed.
   void follow(const Transition& transition, std::uint64_t times) {
-    std::uint64_t& followed = followed_[transition.effect];
+    std::uint64_t& followed = effects_[transition.effect].followed;
     if (followed == 0) effects_followed_.push_back(transition.effect);
     followed += times;
   }
@@ -137,29 +140,35 @@ class TransitionCache {
     std::size_t operator()(const Effect& effect) const;
   };
 
+  // An effect, with what following it needs in one line of the processor's cache.
+  struct alignas(64) Known {
+    Progress progress;
+    HostGrants host;
+    std::uint64_t followed;  // times that are not counted yet
+    const Effect* effect;
+  };
+
   static constexpr std::size_t kMostStates = std::size_t{1} << 23U;
 
-  // A bucket of the table holds the words of key_, of which the first is 0 if the bucket is free, and one
-  // word with the transition.
-  std::size_t words_of_bucket() const { return words_ + 2; }
+  // A bucket of the table holds the words of key_, of which the first is 0 if the bucket is free, then a word
+  // with the transition. Buckets with few words are aligned to the lines of the processor's cache.
+  std::size_t words_of_bucket() const { return words_ <= 2 ? 4 : words_ + 2; }
   void set_key(StateNumber from, const Surroundings& around, HostRequests host) const;
   bool has_key(std::size_t bucket) const;
   std::size_t bucket_of_key() const;
   std::uint32_t number_of_effect(const Effect& effect, const memory::Arbitration& arbitration);
   void double_buckets();
 
-  std::size_t words_;  // of the surroundings
+  std::size_t words_ = 0;  // see words()
   std::unordered_map<State, StateNumber, StateHash> state_numbers_;
-  std::vector<const State*> states_;             // [number]
-  mutable std::vector<std::size_t> last_found_;  // [number]: the bucket that was found last, to begin with it
-  std::vector<std::uint64_t> masks_;             // words_ for each state: see number_of()
+  std::vector<const State*> states_;  // [number]
+  std::vector<std::uint64_t> masks_;  // words_ for each state: see number_of()
   // Of the look-up that is under way: one word with the state's number plus one and the requests of the host,
   // then the surroundings that have an effect.
   mutable std::vector<std::uint64_t> key_;
   std::unordered_map<Effect, std::uint32_t, EffectHash> effect_numbers_;
-  std::vector<const Effect*> effects_;                   // [number]
+  std::vector<Known> effects_;                           // [number]
   std::vector<std::vector<memory::BankUse>> bank_uses_;  // [number of the effect]
-  std::vector<std::uint64_t> followed_;                  // [number of the effect]: times not counted yet
   std::vector<std::uint32_t> effects_followed_;
   std::vector<std::uint64_t> buckets_;
   std::size_t mask_ = 0;  // number of buckets - 1; they are a power of two
