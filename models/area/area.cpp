@@ -433,6 +433,10 @@ std::vector<Item> items(const CoreConfig& config) {
   return found;
 }
 
+bool Area::fits() const {
+  return slices_percent <= 100 && block_rams_percent <= 100 && multipliers_percent <= 100;
+}
+
 Area total(const std::vector<Item>& items, const Device& device) {
   Area area;
   Resources all;

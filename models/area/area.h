@@ -9,15 +9,9 @@
 #include "models/area/parts.h"
 #include "models/fpga/core_config.h"
 
-// Estimates the FPGA resources that the stereo core takes, part by part. The paper's figures 5, 6 and 8 and
-// sections 1, 2 and 7 of the contract give the adders, comparators, shift registers and memories. Their
-// widths follow from the 8 bits of a pixel, the window and the number of disparities. Only one constant, the
-// number of slices per LUT, is fitted to the paper's Table 2 (tests/unit/area/area_total_test.cpp).
-//
-// The count includes all parts that pixels, table entries, sums and disparities pass through. It leaves out
-// the parts that control them: counters, the addresses of tables and results, the repetition of edge pixels,
-// arbiters and the multiplexers of the banks, registers, the local bus. None of these grows with the number
-// of disparities.
+// Estimates the FPGA resources that the stereo core takes, part by part: of all parts that pixels, table
+// entries, sums and disparities pass through, but not of those that control them. README.md says what is
+// counted, and from which figures of the paper and sections of the contract it follows.
 namespace stereotlm::area {
 
 // All parts of one kind, such as the column modules.
@@ -26,17 +20,14 @@ struct Item {
   std::int64_t count = 0;  // of parts
   Resources all;           // of all `count` parts
 
-  // The number of places that the parts take. A place holds a LUT and a flip-flop, which need not belong to
-  // each other.
-  std::int64_t lut_equivalents() const;
+  std::int64_t lut_equivalents() const;  // places of a LUT and a flip-flop, which need not belong together
 };
 
 // The parts of the core with this configuration, in the order in which data passes through them. Parts that
 // the configuration does not need are absent. Throws std::invalid_argument if the configuration has problems.
 std::vector<Item> items(const fpga::CoreConfig& config);
 
-// Slices per LUT-equivalent, from a least-squares fit to the three rows of Table 2. A slice has room for two:
-// 0.5 would mean that all slices are full.
+// Slices per LUT-equivalent: a least-squares fit to the three rows of Table 2.
 inline constexpr double kSlicesPerLutEquivalent = 0.6218;
 
 // The resources of all items together. Percentages are shares of the device: the core does not fit if one of
@@ -54,9 +45,7 @@ struct Area {
   std::optional<std::int64_t> pins = std::nullopt;    // of a board that names its package
   std::optional<double> pins_percent = std::nullopt;  // of the package's user pins
 
-  bool fits() const {  // whether the device has enough slices, block RAMs and multipliers
-    return slices_percent <= 100 && block_rams_percent <= 100 && multipliers_percent <= 100;
-  }
+  bool fits() const;  // whether the device has enough slices, block RAMs and multipliers
 };
 Area total(const std::vector<Item>& items, const Device& device);  // the sum, and its shares of the device
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <string_view>
 
 #include "models/memory/memory_config.h"
@@ -34,29 +33,9 @@ struct BankPins {
   int all() const { return data + control + address; }  // the sum of the three
 };
 
-// The least number of bits that hold `values` different values.
-constexpr int address_bits(std::uint64_t values) {
-  int bits = 0;
-  while ((std::uint64_t{1} << bits) < values) ++bits;
-  return bits;
-}
-
 // The address pins of sdram take the row first, then the column. One more bit of the column says whether all
 // internal banks are meant.
-inline BankPins pins_of(const memory::SsramBankConfig& bank) {
-  BankPins pins;
-  if (!bank.sdram) {
-    pins.address = address_bits(bank.words);
-    return pins;
-  }
-  const auto row_words = static_cast<std::uint64_t>(bank.sdram->row_words);
-  const auto internal_banks = static_cast<std::uint64_t>(bank.sdram->internal_banks);
-  const std::uint64_t rows = (bank.words + row_words * internal_banks - 1) / (row_words * internal_banks);
-  const int row = address_bits(rows);
-  const int column = address_bits(row_words) + 1;
-  pins.address = (row > column ? row : column) + address_bits(internal_banks);
-  return pins;
-}
+BankPins pins_of(const memory::SsramBankConfig& bank);
 
 // Of all boards (ours). The cameras come over PCI.
 inline constexpr int kLocalBusPins = 48;

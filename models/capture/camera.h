@@ -1,12 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
-#include <string>
 #include <systemc>
 
 #include "models/capture/camera_control.h"
-#include "models/kernel_time.h"
 #include "models/step_event.h"
 #include "models/stream.h"
 
@@ -34,15 +31,7 @@ class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCa
 
   // `source` outlives the camera. Throws std::invalid_argument if the configuration has problems or the
   // kernel's time resolution is not 1 ps.
-  Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source)
-      : sc_module(name), control_(config, source, *this) {
-    kernel_time::check_resolution(*this);
-    link.bind(*this);
-    SC_HAS_PROCESS(Camera);
-    SC_METHOD(step);
-    sensitive << step_due_;
-    if (control_.next_ps() == kNever) dont_initialize();
-  }
+  Camera(const sc_core::sc_module_name& name, const CameraConfig& config, CameraSource& source);
 
   const CameraControl& control() const { return control_; }         // the rules behind the sockets
   const CameraTiming& timing() const { return control_.timing(); }  // when frames begin and pixels arrive
@@ -54,15 +43,8 @@ class Camera : public sc_core::sc_module, private FrameReceiver, private FrameCa
   void copy_words(int first, int count, std::uint32_t* to) const override {
     control_.copy_words(first, count, to);
   }
-  void trigger(std::uint64_t begin_ps) override {
-    control_.trigger(begin_ps);
-    step_due_.set(control_.next_ps());
-  }
-  void step() {
-    step_due_.taken();
-    control_.step(kernel_time::now_ps());
-    step_due_.set(control_.next_ps());
-  }
+  void trigger(std::uint64_t begin_ps) override;
+  void step();
 
   CameraControl control_;
   StepEvent step_due_{"step_due"};

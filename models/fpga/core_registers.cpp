@@ -40,10 +40,7 @@ void CoreRegisters::write(std::uint64_t time_ps, std::uint64_t address, std::uin
     done_ = false;
     error_ = false;
   }
-  if ((value & registers::kControlStart) != 0) start(time_ps);
-}
-
-void CoreRegisters::start(std::uint64_t time_ps) {
+  if ((value & registers::kControlStart) == 0) return;
   if (busy_) {
     error_ = true;
     return;
@@ -53,9 +50,7 @@ void CoreRegisters::start(std::uint64_t time_ps) {
   start.time_ps = time_ps;
   for (std::size_t group = 0; group < kCoreGroupCount; ++group)
     start.bases[group] = frame_[frame_index(kPortGroups[group].base_register)];
-  const auto offset = [this](std::uint64_t address) {
-    return static_cast<int>(frame_[frame_index(address)]);
-  };
+  const auto offset = [this](std::uint64_t its) { return static_cast<int>(frame_[frame_index(its)]); };
   start.joint_offsets = {{{offset(registers::kLeftColumns), offset(registers::kLeftRows)},
                           {offset(registers::kRightColumns), offset(registers::kRightRows)}}};
   starter_.start_frame(start);

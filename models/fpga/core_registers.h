@@ -23,8 +23,7 @@ class CoreRegisters {
   class Starter {
    public:
     virtual ~Starter() = default;
-    // Calls refuse_start() to refuse the strobe.
-    virtual void start_frame(const FrameStart& start) = 0;
+    virtual void start_frame(const FrameStart& start) = 0;  // calls refuse_start() to refuse the strobe
   };
 
   // `starter` outlives this object.
@@ -41,12 +40,9 @@ class CoreRegisters {
   // To be called when the frame has ended. `error`: memory refused an access, or the result may differ from
   // that at Fidelity::kCycle.
   void finish_frame(std::uint64_t frame_cycles, bool error);
-  // The interrupt: high from the end of a frame until it is acknowledged.
-  bool done() const { return done_; }
+  bool done() const { return done_; }  // the interrupt: high from the end of a frame until acknowledged
 
  private:
-  void start(std::uint64_t time_ps);
-
   Starter& starter_;
   // [(address - kLeftImageBase) / 4]: bases, then offsets
   std::array<std::uint32_t, (registers::kEnd - registers::kLeftImageBase) / 4> frame_{};

@@ -40,11 +40,9 @@ class ResultControl {
     written_ += words;
   }
 
-  // The number of words in the queue.
-  int queued() const { return queued_; }
-  // Numbers of words of the frame.
-  std::uint64_t words_written() const { return written_; }
-  std::uint64_t words_left() const { return words_per_frame_ - written_; }
+  int queued() const { return queued_; }                                    // words in the queue
+  std::uint64_t words_written() const { return written_; }                  // of the frame
+  std::uint64_t words_left() const { return words_per_frame_ - written_; }  // of the frame
 
  private:
   std::uint64_t words_per_frame_;

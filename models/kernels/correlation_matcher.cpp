@@ -47,6 +47,7 @@ void CorrelationMatcher::run(const std::uint8_t* left, const std::uint8_t* right
   }
 }
 
+// The windows of `row` follow those of the row above it. The first row is 0.
 void CorrelationMatcher::move_sums(Side& side, int row) const {
   const auto add = [&](int image_row, int sign) {
     const std::uint8_t* pixel = side.image.data() + std::ptrdiff_t{image_row} * width_;

@@ -33,7 +33,6 @@ class CorrelationMatcher {
     SimdArray<std::int32_t> products;     // [column][candidate]: of the pixels, summed over the rows
   };
 
-  // The windows of `row` follow those of the row above it. The first row is 0.
   void move_sums(Side& side, int row) const;
   void add_products(Side& own, const Side& other, int row, int column);
   void match_row(Side& own, const Side& other, int row, std::uint8_t* disparity, int step);

@@ -24,31 +24,27 @@ inline bool left_right_consistent(std::uint8_t left_based, std::uint8_t right_ba
 class LrCheck {
  public:
   // `disparities`: D. `tolerance`: nullopt for `off`.
-  LrCheck(int disparities, std::optional<int> tolerance) : delay_(disparities - 1), tolerance_(tolerance) {}
+  LrCheck(int disparities, std::optional<int> tolerance)
+      : delay_(static_cast<std::uint64_t>(disparities - 1)), tolerance_(tolerance) {}
 
   void start_frame() { time_ = 0; }  // to be called before the first column of a frame
 
-  // Steps one column. `left_based`: unit B's disparity of the left pixel of this column. `left_valid`:
-  // whether that pixel's own table entry is valid. `right_based`: unit A's disparity of the right pixel
-  // disparities-1 columns back. Returns the disparity of the left pixel disparities-1 columns back, or
-  // kInvalidDisparity if it fails the check.
+  // Steps one column. `left_based`: unit B's disparity of its left pixel. `left_valid`: whether the table
+  // entry of that pixel is valid. `right_based`: unit A's disparity of the right pixel D-1 columns back.
+  // Returns the disparity of the left pixel D-1 columns back, or kInvalidDisparity if it fails the check.
   std::uint8_t step(std::uint8_t left_based, bool left_valid, std::uint8_t right_based) {
-    left_[time_ % kRing] = left_valid ? left_based : kInvalidDisparity;
-    right_[time_ % kRing] = right_based;
-    std::uint8_t out = kInvalidDisparity;
-    if (time_ >= static_cast<std::uint64_t>(delay_)) {
-      const std::uint8_t d = left_[(time_ - static_cast<std::uint64_t>(delay_)) % kRing];
-      // Right pixel x - d was d columns before right pixel x, which is the newest.
-      if (d != kInvalidDisparity && left_right_consistent(d, right_[(time_ - d) % kRing], tolerance_))
-        out = d;
-    }
-    ++time_;
-    return out;
+    const std::uint64_t now = time_++;
+    left_[now % kRing] = left_valid ? left_based : kInvalidDisparity;
+    right_[now % kRing] = right_based;
+    if (now < delay_) return kInvalidDisparity;
+    const std::uint8_t d = left_[(now - delay_) % kRing];
+    // Right pixel x - d was d columns before right pixel x, which is the newest.
+    return left_right_consistent(d, right_[(now - d) % kRing], tolerance_) ? d : kInvalidDisparity;
   }
 
  private:
   static constexpr std::uint64_t kRing = 256;  // at least the largest disparity + 1
-  int delay_;
+  std::uint64_t delay_;
   std::optional<int> tolerance_;
   std::uint64_t time_ = 0;
   std::array<std::uint8_t, kRing> left_{};

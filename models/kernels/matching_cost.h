@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -40,21 +38,9 @@ struct MatchingCost {
 };
 
 // The name of a kind in board files: "sad".
-inline const char* name_of(CostKind kind) {
-  static constexpr std::array<const char*, 4> kNames = {"sad", "ssd", "zncc", "census"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
+const char* name_of(CostKind kind);
 
 // Every broken rule as `field = value: rule`; empty if the cost can be computed.
-inline std::vector<std::string> problems(const MatchingCost& cost) {
-  std::vector<std::string> found;
-  if (cost.kind == CostKind::kCensus) {
-    kCensusSizeRule.check("census_size", cost.census_size, found);
-  } else if (cost.census_size != 0) {
-    found.push_back("census_size = " + std::to_string(cost.census_size) +
-                    ": must be 0 unless the cost is census");
-  }
-  return found;
-}
+std::vector<std::string> problems(const MatchingCost& cost);
 
 }  // namespace stereotlm::kernels

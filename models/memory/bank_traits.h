@@ -44,21 +44,4 @@ constexpr bool has_separate_ports(BankKind kind) { return traits_of(kind).ports 
 // Whether the table has this kind.
 constexpr bool is_bank_kind(BankKind kind) { return static_cast<std::size_t>(kind) < kBankTraits.size(); }
 
-static_assert(
-    [] {
-      for (std::size_t kind = 0; kind < kBankTraits.size(); ++kind) {
-        if (kBankTraits[kind].kind != static_cast<BankKind>(kind)) return false;
-      }
-      return true;
-    }(),
-    "the rows of kBankTraits are in the order of BankKind");
-static_assert(
-    [] {
-      for (const BankTraits& bank : kBankTraits) {
-        if (bank.ports != 1 && (bank.ports != 2 || bank.has_turnaround)) return false;
-      }
-      return true;
-    }(),
-    "BankArbiter serves one port, or a read port and a write port without turnaround");
-
 }  // namespace stereotlm::memory

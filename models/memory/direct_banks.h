@@ -32,8 +32,7 @@ class DirectBanks {
   bool may_have_changed(Port port, std::uint64_t first, std::uint64_t end) {
     if (port >= watches_.size()) watches_.resize(port + 1);
     Watch& watch = watches_[port];
-    const bool is_new = watch.first != first || watch.end != end;
-    const bool changed = watch.changed || is_new;
+    const bool changed = watch.changed || watch.first != first || watch.end != end;
     watch = {first, end, false};
     return changed;
   }

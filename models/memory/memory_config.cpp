@@ -6,6 +6,23 @@
 
 namespace stereotlm::memory {
 
+static_assert(
+    [] {
+      for (std::size_t kind = 0; kind < kBankTraits.size(); ++kind) {
+        if (kBankTraits[kind].kind != static_cast<BankKind>(kind)) return false;
+      }
+      return true;
+    }(),
+    "the rows of kBankTraits are in the order of BankKind");
+static_assert(
+    [] {
+      for (const BankTraits& bank : kBankTraits) {
+        if (bank.ports != 1 && (bank.ports != 2 || bank.has_turnaround)) return false;
+      }
+      return true;
+    }(),
+    "BankArbiter serves one port, or a read port and a write port without turnaround");
+
 std::string broken_turnaround_rule(BankKind kind, int turnaround_cycles) {
   const BankTraits& traits = traits_of(kind);
   const kernels::IntegerRule rule = traits.has_turnaround ? kTurnaroundRule : kernels::IntegerRule{0, 0};

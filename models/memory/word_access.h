@@ -18,8 +18,6 @@ class WordAccess {
     access_.set_byte_enable_ptr(nullptr);
     access_.set_byte_enable_length(0);
   }
-  WordAccess(const WordAccess&) = delete;
-  WordAccess& operator=(const WordAccess&) = delete;
 
   // `delay`: time of the access, from now; the target adds the time that it takes. Returns false if the
   // target refuses the access: status() is the reason, and word() is 0 after a read.

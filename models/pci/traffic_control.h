@@ -37,10 +37,7 @@ class TrafficControl : public PciMasterIf {
           (result.end == BurstEnd::kMasterAbort ? "no target answers" : "the target answers with an error"));
     }
     words_done_ += result.words;
-    if (result.end != BurstEnd::kComplete) {
-      slot_->request(*this, result.end_ps);
-      return;
-    }
+    if (result.end != BurstEnd::kComplete) return slot_->request(*this, result.end_ps);
     words_done_ = 0;
     ++transfers_;
     const std::uint64_t due_ps = config_.first_request_ps + transfers_ * config_.interval_ps;

@@ -33,4 +33,18 @@ GrantCheck::Times GrantCheck::times_of(std::size_t access, std::size_t word) con
   }
 }
 
+std::string GrantCheck::problem(std::size_t access, std::size_t word, std::uint64_t cycle) const {
+  const Times times = times_of(access, word);
+  if (!times.problem.empty()) return times.problem;
+  if (times.granted != cycle) return times.text() + ": must be granted in cycle " + std::to_string(cycle);
+  return times.requested == cycle ? times.text() + ": it was refused in no cycle" : "";
+}
+
+std::string GrantCheck::granted_at_once(std::size_t access, std::size_t word, std::uint64_t cycle) const {
+  const Times times = times_of(access, word);
+  if (!times.problem.empty()) return times.problem;
+  if (times.granted == cycle && times.requested == cycle) return "";
+  return times.text() + ": must be both in cycle " + std::to_string(cycle);
+}
+
 }  // namespace stereotlm::test

@@ -20,20 +20,9 @@ class GrantCheck {
   // Empty if word number `word` of access number `access` of the port was granted in cycle `cycle`, and was
   // refused in the cycle before. Else what is wrong. A word that was granted at its first request was never
   // refused: granted_at_once() checks it.
-  std::string problem(std::size_t access, std::size_t word, std::uint64_t cycle) const {
-    const Times times = times_of(access, word);
-    if (!times.problem.empty()) return times.problem;
-    if (times.granted != cycle) return times.text() + ": must be granted in cycle " + std::to_string(cycle);
-    if (times.requested == cycle) return times.text() + ": it was refused in no cycle";
-    return {};
-  }
+  std::string problem(std::size_t access, std::size_t word, std::uint64_t cycle) const;
   // Empty if the word was granted in cycle `cycle`, the first one in which it requested.
-  std::string granted_at_once(std::size_t access, std::size_t word, std::uint64_t cycle) const {
-    const Times times = times_of(access, word);
-    if (!times.problem.empty()) return times.problem;
-    if (times.granted == cycle && times.requested == cycle) return {};
-    return times.text() + ": must be both in cycle " + std::to_string(cycle);
-  }
+  std::string granted_at_once(std::size_t access, std::size_t word, std::uint64_t cycle) const;
 
  private:
   struct Times {

@@ -2,6 +2,56 @@
 
 namespace stereotlm::test {
 
+TestHost::Transaction::Transaction(tlm::tlm_command command, std::uint64_t address,
+                                   std::vector<std::uint32_t> data)
+    : words(std::move(data)) {
+  const auto bytes = static_cast<unsigned>(words.size() * 4);
+  set_command(command);
+  set_address(address);
+  set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
+  set_data_length(bytes);
+  set_streaming_width(bytes);
+}
+
+TestHost::Answer TestHost::access(tlm::tlm_command command, std::uint64_t address,
+                                  std::vector<std::uint32_t> words) {
+  request(command, address, std::move(words));
+  const Transaction& transaction = transactions_.back();
+  while (!transaction.answer) sc_core::wait(answered_);
+  const Answer answer = *transaction.answer;
+  if (answer.at > sc_core::sc_time_stamp()) sc_core::wait(answer.at - sc_core::sc_time_stamp());
+  return answer;
+}
+
+unsigned TestHost::debug_write(std::uint64_t address, const std::vector<std::uint32_t>& words) {
+  Transaction transaction(tlm::TLM_WRITE_COMMAND, address, words);
+  return socket->transport_dbg(transaction);
+}
+
+std::vector<std::uint32_t> TestHost::debug_read(std::uint64_t address, std::size_t count) {
+  Transaction transaction(tlm::TLM_READ_COMMAND, address, std::vector<std::uint32_t>(count));
+  transaction.words.resize(socket->transport_dbg(transaction) / 4);
+  return transaction.words;
+}
+
+bool TestHost::dmi(std::uint64_t address, tlm::tlm_dmi& dmi) {
+  Transaction transaction(tlm::TLM_READ_COMMAND, address, {});
+  dmi.init();
+  return socket->get_direct_mem_ptr(transaction, dmi);
+}
+
+TestHost::Answer TestHost::block(tlm::tlm_command command, std::uint64_t address,
+                                 std::vector<std::uint32_t> words, sc_core::sc_time delay) {
+  Transaction transaction(command, address, std::move(words));
+  socket->b_transport(transaction, delay);
+  return answer_of(transaction, delay);
+}
+
+TestHost::Answer TestHost::answer_of(const Transaction& transaction, const sc_core::sc_time& delay) {
+  return {transaction.get_response_status(), transaction.words.front(), sc_core::sc_time_stamp() + delay,
+          transaction.words};
+}
+
 tlm::tlm_sync_enum TestHost::request(tlm::tlm_command command, std::uint64_t address,
                                      std::vector<std::uint32_t> words, sc_core::sc_time delay) {
   Transaction& transaction = transactions_.emplace_back(command, address, std::move(words));

@@ -64,33 +64,13 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return access(command, address, std::vector<std::uint32_t>{word});
   }
   // As above, for a burst.
-  Answer access(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words) {
-    request(command, address, std::move(words));
-    const Transaction& transaction = transactions_.back();
-    while (!transaction.answer) sc_core::wait(answered_);
-    const Answer answer = *transaction.answer;
-    if (answer.at > sc_core::sc_time_stamp()) sc_core::wait(answer.at - sc_core::sc_time_stamp());
-    return answer;
-  }
+  Answer access(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words);
 
   // Returns the number of bytes written.
-  unsigned debug_write(std::uint64_t address, const std::vector<std::uint32_t>& words) {
-    std::vector<std::uint32_t> copy = words;
-    return debug(tlm::TLM_WRITE_COMMAND, address, copy);
-  }
+  unsigned debug_write(std::uint64_t address, const std::vector<std::uint32_t>& words);
   // Returns the words that the target gave.
-  std::vector<std::uint32_t> debug_read(std::uint64_t address, std::size_t count) {
-    std::vector<std::uint32_t> words(count);
-    words.resize(debug(tlm::TLM_READ_COMMAND, address, words) / 4);
-    return words;
-  }
-  bool dmi(std::uint64_t address, tlm::tlm_dmi& dmi) {  // whether DMI is granted for a read at this address
-    tlm::tlm_generic_payload payload;
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    payload.set_address(address);
-    dmi.init();
-    return socket->get_direct_mem_ptr(payload, dmi);
-  }
+  std::vector<std::uint32_t> debug_read(std::uint64_t address, std::size_t count);
+  bool dmi(std::uint64_t address, tlm::tlm_dmi& dmi);  // whether DMI is granted for a read at this address
 
   tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                      sc_core::sc_time& delay) override;
@@ -100,15 +80,7 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
 
  private:
   struct Transaction : tlm::tlm_generic_payload {
-    Transaction(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> data)
-        : words(std::move(data)) {
-      const auto bytes = static_cast<unsigned>(words.size() * 4);
-      set_command(command);
-      set_address(address);
-      set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
-      set_data_length(bytes);
-      set_streaming_width(bytes);
-    }
+    Transaction(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> data);
     std::vector<std::uint32_t> words;
     std::optional<Answer> answer;
   };
@@ -122,25 +94,9 @@ class TestHost : public sc_core::sc_module, public tlm::tlm_bw_transport_if<> {
     return block(command, address, std::vector<std::uint32_t>{word}, delay);
   }
   Answer block(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t> words,
-               sc_core::sc_time delay) {
-    Transaction transaction(command, address, std::move(words));
-    socket->b_transport(transaction, delay);
-    return answer_of(transaction, delay);
-  }
-  static Answer answer_of(const Transaction& transaction, const sc_core::sc_time& delay) {
-    return {transaction.get_response_status(), transaction.words.front(), sc_core::sc_time_stamp() + delay,
-            transaction.words};
-  }
+               sc_core::sc_time delay);
+  static Answer answer_of(const Transaction& transaction, const sc_core::sc_time& delay);
   void record(tlm::tlm_generic_payload& payload, const sc_core::sc_time& delay);
-  unsigned debug(tlm::tlm_command command, std::uint64_t address, std::vector<std::uint32_t>& words) {
-    tlm::tlm_generic_payload payload;
-    payload.set_command(command);
-    payload.set_address(address);
-    payload.set_data_ptr(reinterpret_cast<unsigned char*>(words.data()));
-    payload.set_data_length(static_cast<unsigned>(words.size() * 4));
-    payload.set_streaming_width(static_cast<unsigned>(words.size() * 4));
-    return socket->transport_dbg(payload);
-  }
 
   Manager manager_;
   std::deque<Transaction> transactions_;

@@ -48,8 +48,7 @@ class ComputerView {
 
  private:
   virtual ComputerControls controls() = 0;
-  // The time up to which the controls have been stepped.
-  virtual std::uint64_t now_ps() const = 0;
+  virtual std::uint64_t now_ps() const = 0;  // up to which the controls have been stepped
   virtual BoardCounters board_counters() = 0;
 };
 

@@ -1,15 +1,11 @@
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "models/area/area.h"
 #include "models/area/pins.h"
 #include "platform/config/board_config.h"
-#include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
 
@@ -28,65 +24,21 @@ struct PinsOfBank {
   std::string bank;     // name of the bank
   area::BankPins pins;  // those of the FPGA that it takes
 };
-inline std::vector<PinsOfBank> bank_pins(const BoardConfig& board) {  // in the order of the board file
-  const std::vector<memory::SsramBankConfig> configs = ssram_configs(board);
-  const std::vector<PlacedBuffer> all = buffers(board);
-  std::vector<PinsOfBank> pins;
-  for (std::size_t bank = 0; bank < configs.size(); ++bank) {
-    const std::string& name = board.banks[bank].name;
-    const bool is_used = std::any_of(all.begin(), all.end(), [&](const PlacedBuffer& buffer) {
-      return buffer.bank == name && buffer.rows(board.image) > 0;
-    });
-    if (is_used) pins.push_back({name, area::pins_of(configs[bank])});
-  }
-  return pins;
-}
-inline int pins_of(const BoardConfig& board) {  // of the banks, the local bus, clocks and status
-  int pins = area::kLocalBusPins + area::kOtherPins;
-  for (const PinsOfBank& bank : bank_pins(board)) pins += bank.pins.all();
-  return pins;
-}
+// In the order of the board file.
+std::vector<PinsOfBank> bank_pins(const BoardConfig& board);
+// Of the banks, the local bus, clocks and status.
+int pins_of(const BoardConfig& board);
 
-inline area::Area area_of(const BoardConfig& board) {  // area of the core, as shares of the board's device
-  area::Area area = area::total(area_items(board), device_of(board));
-  if (const area::Package* const package = area::find_package(board.fpga.package)) {
-    area.pins = pins_of(board);
-    area.pins_percent = 100.0 * pins_of(board) / package->user_pins;
-  }
-  return area;
-}
+// The area of the core, as shares of the board's device.
+area::Area area_of(const BoardConfig& board);
 
 // "548 pins: ff1152 has 824, ff1517 1104"; with a package "548 of 824 pins of ff1152".
-inline std::string pins_text(const BoardConfig& board) {
-  if (const area::Package* const package = area::find_package(board.fpga.package))
-    return fmt::format("{} of {} pins of {}", pins_of(board), package->user_pins, package->name);
-  std::string text = fmt::format("{} pins", pins_of(board));
-  if (board.fpga.device != area::kDeviceWithPackages) return text;
-  const char* separator = ": ";
-  for (const area::Package& package : area::kPackages) {
-    text += fmt::format("{}{}{} {}", separator, package.name, separator[0] == ':' ? " has" : "",
-                        package.user_pins);
-    separator = ", ";
-  }
-  return text;
-}
+std::string pins_text(const BoardConfig& board);
 
 // "device xc2v6000: fits; the smallest that fits: xc2v1500; 548 pins: ff1152 has 824, ff1517 1104".
-inline std::string device_text(const BoardConfig& board) {
-  const area::Area area = area_of(board);
-  const area::Device* const smallest = area::smallest_device(area);
-  return fmt::format("device {}: {}; the smallest that fits: {}; {}", board.fpga.device,
-                     area.fits() ? "fits" : "does not fit", smallest == nullptr ? "none" : smallest->name,
-                     pins_text(board));
-}
+std::string device_text(const BoardConfig& board);
 
 // A remark on a clock above that of the paper's core; empty for any other.
-inline std::string clock_remark(const BoardConfig& board) {
-  if (board.fpga.clock_mhz <= area::kPaperClockMhz) return "";
-  return fmt::format(
-      "fpga.clock_mhz = {}: above the {} MHz that the paper's core reached; nothing is placed or "
-      "routed here, so whether this core reaches it is open",
-      board.fpga.clock_mhz, area::kPaperClockMhz);
-}
+std::string clock_remark(const BoardConfig& board);
 
 }  // namespace stereotlm::platform

@@ -164,10 +164,9 @@ std::string path_problem(const std::string& path) {
 }
 
 bool is_board_file(const std::string& board) {
-  const std::string ending = ".yaml";
+  const std::string_view ending = ".yaml";
   return board.find('/') != std::string::npos ||
-         (board.size() >= ending.size() &&
-          board.compare(board.size() - ending.size(), ending.size(), ending) == 0);
+         (board.size() >= ending.size() && board.substr(board.size() - ending.size()) == ending);
 }
 
 BoardDraft::BoardDraft(const std::string& board, const std::string* text) {
@@ -217,8 +216,7 @@ void BoardDraft::resolve_extends() {
   for (std::size_t i = 0; i < tree_.entries.size(); ++i) {
     const YamlNode::Entry& entry = tree_.entries[i];
     if (!is_extends(entry)) continue;
-    has_extends_ = true;
-    if (base || !is_whole_) {
+    if (std::exchange(has_extends_, true)) {
       report(entry.key.place, entry.value, "repeated key");
       continue;
     }

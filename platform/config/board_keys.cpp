@@ -345,8 +345,7 @@ void read_filter(ValueReader& values, const Key& key, const Entry& entry, BoardC
   } else if (!node.is_map()) {
     values.report(key.path, node, key.rule.text);
   } else {
-    const auto entries =
-        values.read_entries(key.path, node, entry.key.place, child_keys(key.path), child_keys(key.path));
+    const auto entries = values.read_entries(key.path, node, entry.key.place);
     kernels::FilterKernel filter;
     for (const Entry* const part : *entries) {
       const Key& its = board_key(below(key.path, part->key.text));
@@ -382,8 +381,7 @@ void read_cost(ValueReader& values, const Key& key, const Entry& entry, BoardCon
       cost = {static_cast<kernels::CostKind>(index_in(key.rule.words, entry.value.text)), 0};
     return;
   }
-  const auto entries =
-      values.read_entries(key.path, entry.value, entry.key.place, child_keys(key.path), child_keys(key.path));
+  const auto entries = values.read_entries(key.path, entry.value, entry.key.place);
   if (entries->empty()) return;
   const Key& census = board_key("matcher.cost.census");
   const int size = integer_or_zero(values.read(census.path, entries->front()->value, census.rule));

@@ -52,7 +52,7 @@ class BoardReader {
 
  private:
   void read_section(const std::string& path, const YamlNode& node, const Place& key) {
-    const auto entries = values_.read_entries(path, node, key, child_keys(path), required_keys(path));
+    const auto entries = values_.read_entries(path, node, key);
     if (!entries) return;
     if (path == "ssram") return read_ssram(*entries);
     for (const YamlNode::Entry* const entry : *entries) {
@@ -87,9 +87,7 @@ class BoardReader {
 
   BankEntry read_bank_entry(const std::string& path, const YamlNode::Entry& entry) {
     BankEntry bank{entry.key.place, {}};
-    const std::string schema = schema_path(path);
-    const auto entries =
-        values_.read_entries(path, entry.value, entry.key.place, child_keys(schema), required_keys(schema));
+    const auto entries = values_.read_entries(path, entry.value, entry.key.place);
     if (!entries) return bank;
     for (const YamlNode::Entry* const given : *entries) {
       for (const BankKey& key : bank_keys()) {
@@ -136,12 +134,8 @@ class BoardReader {
       return values_.report(place, path, short_text(node),
                             fmt::format("{} banks; {}", node.entries.size(), rule_text(path)));
     }
-    std::vector<std::string> names;
-    for (const YamlNode::Entry& entry : node.entries) {
-      if (is_bank_name(entry.key.text)) names.push_back(entry.key.text);
-    }
     const std::size_t before = values_.finding_count();
-    const auto entries = values_.read_entries(path, node, node.place, names, {});
+    const auto entries = values_.read_entries(path, node, node.place);
     if (!entries) return;
     const bool names_valid = values_.finding_count() == before;
     board_.banks.clear();
@@ -153,7 +147,7 @@ class BoardReader {
     for (const BankKey& key : bank_keys()) {
       if (default_lacks.count(key.name) == 0) continue;
       const std::string full = below("ssram.default", key.name);
-      values_.report_missing_beside(latest(defaults.key, kind->place), full, rule_text(full));
+      values_.report_missing(latest(defaults.key, kind->place), full, rule_text(full), true);
     }
   }
 
@@ -172,8 +166,8 @@ class BoardReader {
       } else if (given != nullptr || !key.kind) {
         continue;  // reported with its entry
       } else if (const auto* const kind = own.find("kind")) {
-        values_.report_missing_beside(latest(latest(own.key, kind->place), defaults.key),
-                                      below(path, key.name), rule_text(below("ssram.banks.NAME", key.name)));
+        values_.report_missing(latest(latest(own.key, kind->place), defaults.key), below(path, key.name),
+                               rule_text(below("ssram.banks.NAME", key.name)), true);
       } else {
         default_lacks.insert(key.name);
       }
@@ -215,15 +209,11 @@ void ValueReader::report(const std::string& path, const YamlNode& node, const st
   report(node.place, path, short_text(node), rule);
 }
 
-void ValueReader::report_missing(const Place& place, const std::string& path, const std::string& rule) {
+void ValueReader::report_missing(const Place& place, const std::string& path, const std::string& rule,
+                                 bool is_between_keys) {
   findings_.emplace_back(place, fmt::format("{}: missing: {}", path, rule));
   findings_.back().missing = path;
-}
-
-void ValueReader::report_missing_beside(const Place& place, const std::string& path,
-                                        const std::string& rule) {
-  report_missing(place, path, rule);
-  findings_.back().is_between_keys = true;
+  findings_.back().is_between_keys = is_between_keys;
 }
 
 void ValueReader::accept(const std::string& path, const Place& place) {
@@ -241,15 +231,19 @@ bool ValueReader::check_use(const std::string& path, const YamlNode& node) {
 }
 
 std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string& path, const YamlNode& node,
-                                                              const Place& key,
-                                                              const std::vector<std::string>& known,
-                                                              const std::vector<std::string>& required) {
+                                                              const Place& key) {
   if (!node.misuse.empty()) {  // the message does not show values that a preset added to the map
     report(node.place, path, node.is_map() ? "{..}" : short_text(node), node.misuse);
   }
+  const std::string schema = schema_path(path);
   if (!node.is_map()) {
-    if (node.misuse.empty()) report(path, node, rule_text(schema_path(path)));
+    if (node.misuse.empty()) report(path, node, rule_text(schema));
     return std::nullopt;
+  }
+  const bool is_banks = path == "ssram.banks";
+  std::vector<std::string> known = is_banks ? std::vector<std::string>() : child_keys(schema);
+  for (const YamlNode::Entry& entry : node.entries) {
+    if (is_banks && is_bank_name(entry.key.text)) known.push_back(entry.key.text);
   }
   Entries entries;
   const auto find = [&entries](const std::string& name) {
@@ -261,8 +255,7 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
     const std::string full = below(path, entry.key.is_scalar() ? entry.key.text : short_text(entry.key));
     if (!entry.key.misuse.empty()) report(entry.key.place, full, short_text(entry.value), entry.key.misuse);
     if (!entry.key.is_scalar() || std::find(known.begin(), known.end(), entry.key.text) == known.end()) {
-      const bool is_bank = path == "ssram.banks";
-      std::string rule = is_bank ? kBankNameRule : unknown_key_text(full);
+      std::string rule = is_banks ? kBankNameRule : unknown_key_text(full);
       if (const auto name = name_before_colon(entry, known)) {
         joined.insert(*name);
         rule = fmt::format("a blank is missing after the colon: {}: {}", *name,
@@ -270,24 +263,21 @@ std::optional<ValueReader::Entries> ValueReader::read_entries(const std::string&
       }
       report(entry.key.place, full, short_text(entry.value), rule);
     } else if (const auto first = find(entry.key.text); first != entries.end()) {
-      report_repeated(entry, **first, full);
+      const Place& place = (*first)->key.place;
+      const bool is_beside = place.source == Place::kBoard && entry.key.place.source == Place::kBoard;
+      report(
+          entry.key.place, full, short_text(entry.value),
+          is_beside ? fmt::format("repeated key, first at {}:{}", place.line, place.column) : "repeated key");
     } else {
       entries.push_back(&entry);
     }
   }
-  for (const std::string& name : required) {
+  for (const std::string& name : is_banks ? std::vector<std::string>() : required_keys(schema)) {
     const std::string full = below(path, name);
-    if (find(name) == entries.end() && joined.count(name) == 0) report_missing(key, full, rule_text(full));
+    if (find(name) == entries.end() && joined.count(name) == 0)
+      report_missing(key, full, rule_text(full), false);
   }
   return entries;
-}
-
-void ValueReader::report_repeated(const YamlNode::Entry& entry, const YamlNode::Entry& first,
-                                  const std::string& path) {
-  const Place& place = first.key.place;
-  const bool is_beside = place.source == Place::kBoard && entry.key.place.source == Place::kBoard;
-  report(entry.key.place, path, short_text(entry.value),
-         is_beside ? fmt::format("repeated key, first at {}:{}", place.line, place.column) : "repeated key");
 }
 
 std::optional<KeyValue> ValueReader::read(const std::string& path, const YamlNode& node,

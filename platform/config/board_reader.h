@@ -34,8 +34,9 @@ class ValueReader {
   void report_between_keys(const Place& place, std::string text);
   void report(const Place& place, const std::string& path, const std::string& value, const std::string& rule);
   void report(const std::string& path, const YamlNode& node, const std::string& rule);
-  // Reports a missing key that the value of another key requires.
-  void report_missing_beside(const Place& place, const std::string& path, const std::string& rule);
+  // Reports a missing key. `is_between_keys`: the value of another key requires it.
+  void report_missing(const Place& place, const std::string& path, const std::string& rule,
+                      bool is_between_keys);
   std::size_t finding_count() const { return findings_.size(); }
 
   // Stores the path and place of a value that keeps its rule.
@@ -45,20 +46,15 @@ class ValueReader {
   // Reports an anchor, an alias or a tag, and returns false if the value has one.
   bool check_use(const std::string& path, const YamlNode& node);
 
-  // Returns the entries of a map whose keys are in `known`, each key once, in the order of the text. Reports
-  // keys that are not in `known`, repeated keys, and missing keys of `required`. Reports a value that is no
-  // map, and returns nullopt. `key` is the place of the map's own key, at which missing keys are reported.
-  std::optional<Entries> read_entries(const std::string& path, const YamlNode& node, const Place& key,
-                                      const std::vector<std::string>& known,
-                                      const std::vector<std::string>& required);
+  // Returns the entries of a map with a known key, each key once, in the order of the text. Reports unknown,
+  // repeated and missing keys. Reports a value that is no map, and returns nullopt. `key` is the place of the
+  // map's own key, at which missing keys are reported.
+  std::optional<Entries> read_entries(const std::string& path, const YamlNode& node, const Place& key);
 
   // A number or a word.
   std::optional<KeyValue> read(const std::string& path, const YamlNode& node, const ValueRule& rule);
 
  private:
-  void report_missing(const Place& place, const std::string& path, const std::string& rule);
-  void report_repeated(const YamlNode::Entry& entry, const YamlNode::Entry& first, const std::string& path);
-
   std::vector<Finding>& findings_;
   std::unordered_map<std::string, Place> valid_;  // [path]
 };

@@ -63,6 +63,28 @@ void BusTrace::hand_out(std::uint64_t now_ps) {
                 levels_.end());
 }
 
+bool BusTrace::is_in_window(const BusBurst& burst) const {
+  return burst.end_ps > begin_ps_ && burst.request_ps < end_ps_;
+}
+
+bool BusTrace::is_in_window(const QueueLevel& level) const {
+  return level.time_ps > begin_ps_ && level.time_ps <= end_ps_;
+}
+
+void BusTrace::add(const BusBurst& burst, std::uint64_t free_ps) {
+  if (is_in_window(burst)) bursts_.push_back({burst, free_ps});
+}
+
+void BusTrace::add(const QueueLevel& level) {
+  if (is_in_window(level)) levels_.push_back(level);
+}
+
+void BusTrace::Fifo::add(std::uint64_t& last_ps, std::uint64_t time_ps, std::int64_t words) {
+  if (time_ps <= last_ps) return;
+  last_ps = time_ps;
+  changes_.push_back({time_ps, words});
+}
+
 void BusTrace::Fifo::settle(std::uint64_t now_ps) {
   std::sort(changes_.begin(), changes_.end(),
             [](const Change& a, const Change& b) { return a.time_ps < b.time_ps; });

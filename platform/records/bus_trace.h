@@ -76,11 +76,7 @@ class BusTrace : public pci::PciBusObserver,
       std::int64_t words;
     };
     // A change that is reported again is left out.
-    void add(std::uint64_t& last_ps, std::uint64_t time_ps, std::int64_t words) {
-      if (time_ps <= last_ps) return;
-      last_ps = time_ps;
-      changes_.push_back({time_ps, words});
-    }
+    void add(std::uint64_t& last_ps, std::uint64_t time_ps, std::int64_t words);
 
     BusTrace& trace_;
     const char* name_;
@@ -102,18 +98,10 @@ class BusTrace : public pci::PciBusObserver,
   void settle_posted(std::uint64_t now_ps);
   const char* local_target(std::uint64_t address) const;
 
-  bool is_in_window(const BusBurst& burst) const {
-    return burst.end_ps > begin_ps_ && burst.request_ps < end_ps_;
-  }
-  bool is_in_window(const QueueLevel& level) const {
-    return level.time_ps > begin_ps_ && level.time_ps <= end_ps_;
-  }
-  void add(const BusBurst& burst, std::uint64_t free_ps) {
-    if (is_in_window(burst)) bursts_.push_back({burst, free_ps});
-  }
-  void add(const QueueLevel& level) {
-    if (is_in_window(level)) levels_.push_back(level);
-  }
+  bool is_in_window(const BusBurst& burst) const;
+  bool is_in_window(const QueueLevel& level) const;
+  void add(const BusBurst& burst, std::uint64_t free_ps);
+  void add(const QueueLevel& level);
 
   BusObserver& observer_;
   Clock core_clock_;

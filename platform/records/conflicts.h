@@ -17,9 +17,8 @@ namespace stereotlm::platform {
 
 // Sums of what was recorded of stalls, over the frames.
 struct ConflictSums {
-  std::uint64_t frames = 0;  // recorded
-  // Of the strips.
-  std::uint64_t cycles = 0;
+  std::uint64_t frames = 0;             // recorded
+  std::uint64_t cycles = 0;             // of the strips, as the next two
   std::vector<std::uint64_t> stalls;    // [requester]
   std::vector<std::uint64_t> accesses;  // [bank]
   // Of the tiles: stall cycles by requester, bank and requester to blame.
@@ -39,8 +38,7 @@ class Conflicts {
   fpga::ConflictRecorder& recorder() { return recorder_; }              // to be given to the core
   const fpga::ConflictRecorder& recorder() const { return recorder_; }  // as recorded up to now
 
-  // See ConflictRecorder::take_frames().
-  std::vector<fpga::FrameConflicts> take_frames();
+  std::vector<fpga::FrameConflicts> take_frames();  // see ConflictRecorder::take_frames()
 
   // The identities between the sums of tiles and strips and the figures of the run that do not hold. To be
   // called when all frames have been taken.

@@ -107,8 +107,7 @@ class TimelineSums {
  public:
   explicit TimelineSums(const BoardConfig& board) : clock_(board.fpga.clock_mhz) {}
 
-  // Events by their ends.
-  void add(const TimelineEvent& event);
+  void add(const TimelineEvent& event);  // events by their ends
   // Checks the identities, once all events have been added.
   void check(const Statistics& statistics, Audit& audit) const;
 
@@ -122,8 +121,7 @@ class TimelineSums {
   using Resource = std::pair<EventKind, std::string_view>;
   static constexpr Resource kCore = {EventKind::kFrame, "core"};
 
-  // Nothing for events that may overlap.
-  static std::optional<Resource> resource_of(const TimelineEvent& event);
+  static std::optional<Resource> resource_of(const TimelineEvent& event);  // none: it may overlap others
   Sums sums_of(EventKind kind, std::string_view what, std::string_view why = "") const;
 
   Clock clock_;

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <limits>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -46,15 +47,9 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-template <std::size_t kSize>
-bool is_one_of(const std::string& text, const std::array<std::string_view, kSize>& words) {
-  return std::find(words.begin(), words.end(), text) != words.end();
-}
-
-// Whether YAML 1.1 or 1.2 reads the text as a number: 7, +7, 0x1F, 0o17, 1_000, 1., .5, 1e3, .inf, .nan.
-bool looks_like_number(const std::string& text) {
-  const std::string lower_text = lower(text);
-  std::string_view rest = lower_text;
+// Whether YAML 1.1 or 1.2 reads the text, in small letters, as a number: 7, +7, 0x1f, 0o17, 1_000, 1., .5,
+// 1e3, .inf, .nan.
+bool looks_like_number(std::string_view rest) {
   if (!rest.empty() && (rest.front() == '-' || rest.front() == '+')) rest.remove_prefix(1);
   if (rest == ".inf" || rest == ".nan") return true;
   const std::string_view prefix = rest.substr(0, 2);
@@ -76,14 +71,14 @@ bool looks_like_number(const std::string& text) {
 // A text that a reader of YAML could take for a number, a truth value or null, or could not read, needs
 // quotes.
 bool needs_quotes(const std::string& text) {
-  constexpr std::array<std::string_view, 10> kReserved = {"y",  "n",   "yes",  "no",   "true",
-                                                          "on", "off", "null", "none", "false"};
+  static const std::set<std::string_view> kReserved = {"y",  "n",   "yes",  "no",   "true",
+                                                       "on", "off", "null", "none", "false"};
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const bool is_plain =
       !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
         return is_letter(c) || is_digit(c) || c == '_' || c == '-';
       });
-  return !is_plain || is_one_of(lower(text), kReserved);
+  return !is_plain || kReserved.count(lower(text)) > 0;
 }
 
 // A scalar or null: as it was written (`as_yaml` false), or so that a reader of YAML reads it back.
@@ -192,9 +187,8 @@ std::string decimal_text(double value) {
 }
 
 bool is_text(const YamlNode& node) {
-  constexpr std::array<std::string_view, 2> kTruth = {"true", "false"};
-  return node.is_scalar() &&
-         (node.quoted || (!looks_like_number(node.text) && !is_one_of(lower(node.text), kTruth)));
+  const std::string word = lower(node.text);
+  return node.is_scalar() && (node.quoted || (!looks_like_number(word) && word != "true" && word != "false"));
 }
 
 std::string short_text(const YamlNode& node) {

@@ -10,8 +10,9 @@
 // The keys of stats.json (sw/report/README.md), in their order.
 namespace stereotlm::area {
 
+using stats::Field;
+
 constexpr auto fields_of(const Area* /*type*/) {
-  using stats::Field;
   return std::tuple(
       Field{"slices", &Area::slices}, Field{"slices_percent", &Area::slices_percent},
       Field{"luts", &Area::luts}, Field{"flip_flops", &Area::flip_flops},
@@ -25,8 +26,10 @@ constexpr auto fields_of(const Area* /*type*/) {
 
 namespace stereotlm::platform {
 
+using stats::Field;
+using stats::Part;
+
 constexpr auto fields_of(const BankStatistics* /*type*/) {
-  using stats::Field;
   using Bank = BankStatistics;
   return std::tuple(
       Field{"name", &Bank::name}, Field{"reads", &Bank::reads}, Field{"writes", &Bank::writes},
@@ -39,7 +42,6 @@ constexpr auto fields_of(const BankStatistics* /*type*/) {
 }
 
 constexpr auto fields_of(const PortStatistics* /*type*/) {
-  using stats::Field;
   using Port = PortStatistics;
   return std::tuple(Field{"name", &Port::name}, Field{"grants", &Port::grants},
                     Field{"stall_cycles", &Port::stall_cycles}, Field{"passed_cycles", &Port::passed_cycles},
@@ -48,21 +50,18 @@ constexpr auto fields_of(const PortStatistics* /*type*/) {
 }
 
 constexpr auto fields_of(const BlameRow* /*type*/) {
-  using stats::Field;
   return std::tuple(Field{"port", &BlameRow::port}, Field{"bank", &BlameRow::bank},
                     Field{"by", &BlameRow::by, "a port, `turnaround`, `row` or `refresh`"},
                     Field{"cycles", &BlameRow::cycles});
 }
 
 constexpr auto fields_of(const PciMasterStatistics* /*type*/) {
-  using stats::Field;
   using Master = PciMasterStatistics;
   return std::tuple(Field{"name", &Master::name}, Field{"transactions", &Master::transactions},
                     Field{"words", &Master::words}, Field{"wait_clocks", &Master::wait_clocks});
 }
 
 constexpr auto fields_of(const CameraStatistics* /*type*/) {
-  using stats::Field;
   using Camera = CameraStatistics;
   return std::tuple(
       Field{"name", &Camera::name}, Field{"frames", &Camera::frames},
@@ -73,27 +72,23 @@ constexpr auto fields_of(const CameraStatistics* /*type*/) {
 }
 
 constexpr auto fields_of(const Percentiles* /*type*/) {
-  using stats::Field;
   return std::tuple(Field{"min", &Percentiles::min}, Field{"p50", &Percentiles::p50},
                     Field{"p95", &Percentiles::p95}, Field{"p99", &Percentiles::p99},
                     Field{"max", &Percentiles::max});
 }
 
 constexpr auto fields_of(const SteadyRate* /*type*/) {
-  using stats::Field;
   return std::tuple(Field{"steady", &SteadyRate::frames_per_second, "", stats::above_zero},
                     Field{"steady_uncertainty", &SteadyRate::uncertainty});
 }
 
 constexpr auto fields_of(const FramesPerSecond* /*type*/) {
-  using stats::Field;
   return std::tuple(Field{"core", &FramesPerSecond::core, "", stats::above_zero},
                     Field{"system", &FramesPerSecond::system, "", stats::above_zero},
                     stats::Merged{&FramesPerSecond::steady});
 }
 
 constexpr auto fields_of(const Bound* /*type*/) {
-  using stats::Field;
   return std::tuple(
       Field{"core", &Bound::core, "", stats::above_zero}, Field{"core_limited_by", &Bound::core_limited_by},
       Field{"system", &Bound::system, "", stats::above_zero},
@@ -101,8 +96,6 @@ constexpr auto fields_of(const Bound* /*type*/) {
 }
 
 constexpr auto fields_of(const ComputerStatistics* /*type*/) {
-  using stats::Field;
-  using stats::Part;
   using Computer = ComputerStatistics;
   return std::tuple(Part{"pci", std::tuple(Field{"clocks", &Computer::pci_clocks},
                                            Field{"busy_clocks", &Computer::pci_busy_clocks},
@@ -116,7 +109,6 @@ constexpr auto fields_of(const ComputerStatistics* /*type*/) {
 }
 
 constexpr auto fields_of(const Statistics* /*type*/) {
-  using stats::Field;
   return std::tuple(
       Field{"board", &Statistics::board},
       Field{"fidelity", &Statistics::fidelity, "",

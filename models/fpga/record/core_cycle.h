@@ -18,8 +18,7 @@ struct PortCycle {
   std::size_t bank = 0;       // of a request
   std::uint64_t address = 0;  // of a request: byte address in the bank
   std::size_t by = 0;         // of a request that waits: who is to blame, see Requesters
-  // The number in its frame of the slot that a reader takes or handles, or of the word that is written.
-  std::uint64_t item = 0;
+  std::uint64_t item = 0;     // number in its frame of the slot taken or handled, or of the word written
 };
 
 // One cycle of the core, as it is decided and arbitrated. The queues are as the cycle begins.

@@ -27,18 +27,15 @@ class Requesters {
   std::size_t host(HostTraffic traffic) const {
     return ports_.core_size() + static_cast<std::size_t>(traffic);
   }
-  // The requester behind a port, whose traffic this is if it is the host's. Or the number of another cause,
-  // such as memory::kTurnaround.
+  // The requester behind a port, with this traffic if it is the host's; or the number of another cause.
   std::size_t of_port(std::size_t port, HostTraffic traffic) const {
     if (port >= memory::kTurnaround) return size() + (port - memory::kTurnaround);
     return port == ports_.host() ? host(traffic) : port;
   }
-  // The port of a requester.
-  memory::Port port_of(std::size_t requester) const {
+  memory::Port port_of(std::size_t requester) const {  // the port of a requester
     return requester < ports_.core_size() ? requester : ports_.host();
   }
-  // The direction of all its accesses.
-  bool writes(std::size_t requester) const {
+  bool writes(std::size_t requester) const {  // the direction of all its accesses
     if (requester < ports_.core_size()) return ports_.group(requester).write;
     return requester != host(HostTraffic::kReadBack);
   }

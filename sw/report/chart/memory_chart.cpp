@@ -175,6 +175,16 @@ std::string arrow_element(std::vector<Point> way, bool there, bool back, double 
   return line_element(way, width, color) + tips;
 }
 
+// The straight way between two boxes, from the middle of the smaller one, or `beside` it.
+std::vector<Point> way_between(const Box& from, const Box& to, double beside = 0) {
+  if (from.right() <= to.x || to.right() <= from.x) {
+    const double y = (from.height < to.height ? from : to).middle_y();
+    return {{from.x < to.x ? from.right() : from.x, y}, {from.x < to.x ? to.x : to.right(), y}};
+  }
+  const double x = (from.width < to.width ? from : to).middle_x() + beside;
+  return {{x, from.y < to.y ? from.bottom() : from.y}, {x, from.y < to.y ? to.y : to.bottom()}};
+}
+
 std::string colors_css(const char* Color::*theme) {
   std::string text;
   for (const Color& each : kColors) text += fmt::format(" --mc-{}: {};", each.name, each.*theme);
@@ -358,16 +368,17 @@ class Chart {
     if (view.in_computer) add_parts(board_, run_, lines_);
     make_edges();
     measure_banks();
-    measure_ports();
   }
 
   std::string svg() {
-    const double top = draw_heading();
+    const double width = fpga_.right() - kMargin;
+    blocks_ += text_element(board_.name, kHeading, kMargin, kMargin, width);
+    const double top = draw_notes(subtitle_of(view_), kMargin, kMargin + 24, width) + 12;
     fpga_.y = view_.in_computer ? draw_computer(top) : top;
+    place_ports();
     place_banks(top);
-    const double bottom = place_ports();
     for (const Bank& bank : banks_) draw_bank(bank);
-    draw_core(bottom);
+    draw_core();
     connect_parts();
     if (!view_.in_computer) draw_legend({fpga_.x, fpga_.bottom() + 12});
     const double height = std::max({legend_bottom_, fpga_.bottom(), banks_.back().box.bottom()}) + kMargin;
@@ -399,14 +410,8 @@ class Chart {
   };
   struct Bank {
     std::string name;
-    std::vector<Held> buffers;                         // those of one port follow each other
-    std::vector<std::pair<std::size_t, double>> ends;  // edges, and where they leave the bank, below its top
-    Box box;
-  };
-  struct Port {
-    std::string name;
-    std::vector<std::size_t> edges;  // in the order of the banks
-    double bundle = 0;               // width of its edges side by side
+    std::vector<Held> buffers;                   // those of one port follow each other
+    std::vector<std::pair<Edge*, double>> ends;  // and where they leave the bank, below its top
     Box box;
   };
 
@@ -455,10 +460,12 @@ class Chart {
       }
       leave(bank, "host", kPadding + kNameStep / 2);
       double y = kPadding + kNameStep + (run_ == nullptr ? 1 : 2) * kNoteStep + 10;
-      for (std::size_t i = 0; i < bank.buffers.size(); ++i, y += kNoteStep) {
-        if (i == 0 || bank.buffers[i].port != bank.buffers[i - 1].port)
-          y = leave(bank, bank.buffers[i].port, y + kNoteStep / 2) - kNoteStep / 2;
-        bank.buffers[i].y = y;
+      std::string port;
+      for (Held& buffer : bank.buffers) {
+        if (buffer.port != port) y = leave(bank, buffer.port, y + kNoteStep / 2) - kNoteStep / 2;
+        port = buffer.port;
+        buffer.y = y;
+        y += kNoteStep;
       }
       bank.box = {kMargin, 0, kBankWidth, y + (bank.buffers.empty() ? kNoteStep : 0) + kPadding};
       banks_.push_back(std::move(bank));
@@ -468,75 +475,63 @@ class Chart {
   // Lets the link of the port leave the bank at `y` below its top, or lower if the link above and the label
   // between them need the room. Returns where.
   double leave(Bank& bank, const std::string& port, double y) {
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-      if (edges_[i].link.from != "port-" + port || edges_[i].link.to != "bank-" + bank.name) continue;
+    for (Edge& edge : edges_) {
+      if (edge.link.from != "port-" + port || edge.link.to != "bank-" + bank.name) continue;
       if (!bank.ends.empty()) {
         const auto& [above, above_y] = bank.ends.back();
-        y = std::max(y, above_y + (edges_[above].width + edges_[i].width) / 2 + kLabelHeight + 8);
+        y = std::max(y, above_y + (above->width + edge.width) / 2 + kLabelHeight + 8);
       }
-      bank.ends.emplace_back(i, y);
+      bank.ends.emplace_back(&edge, y);
     }
     return y;
   }
 
-  // The ports that exist, from top to bottom: the tables beside the pixel ports that they serve.
-  void measure_ports() {
+  // Places the ports that exist one below the other: the tables beside the pixel ports that they serve. The
+  // links of a port begin side by side, in the order of the banks.
+  void place_ports() {
     Lines names = {"host", "left_lut", "left_pixel", "right_pixel", "right_lut", "result"};
     if (board_.fpga.joint_tables) names = {"host", "left_pixel", "left_lut", "right_pixel", "result"};
-    fpga_ = {kBankRight + kBendsFromBank + kBendWidth, 0, kFpgaWidth, 0};
+    double y = fpga_.y + kFpgaTitle;
     for (const std::string& name : names) {
-      Port port;
-      port.name = name;
-      for (const Bank& bank : banks_) {
-        for (const auto& [edge, y] : bank.ends) {
-          if (edges_[edge].link.from != "port-" + name) continue;
-          port.edges.push_back(edge);
-          port.bundle += edges_[edge].width + kBetweenEdges;
-        }
+      const std::string id = "port-" + name;
+      std::vector<Edge*> edges;
+      double bundle = 0;
+      for (Edge& edge : edges_) {
+        if (edge.link.from != id) continue;
+        edges.push_back(&edge);
+        bundle += edge.width + kBetweenEdges;
       }
-      if (port.edges.empty()) continue;
+      if (edges.empty()) continue;
       const bool is_pixel = name == "left_pixel" || name == "right_pixel";
       const double lane = is_pixel ? height_of("stage-" + name.substr(0, name.find('_')) + "_lane") : 0;
-      port.box = {fpga_.x + kFpgaPadding, 0, kPortWidth,
-                  std::max({height_of("port-" + name), port.bundle + 12, lane})};
-      ports_.push_back(std::move(port));
+      const Box box{fpga_.x + kFpgaPadding, y, kPortWidth, std::max({height_of(id), bundle + 12, lane})};
+      double end = box.middle_y() - bundle / 2;
+      for (Edge* const edge : edges) {
+        end += edge->width / 2;
+        edge->way = {{box.x, end}, {fpga_.x, end}};
+        end += edge->width / 2 + kBetweenEdges;
+      }
+      ports_.push_back(id);
+      boxes_[id] = box;
+      y = box.bottom() + kBetweenPorts;
     }
+    fpga_.height = y - kBetweenPorts + kFpgaFoot - fpga_.y;
   }
 
-  // As low as the ports, unless they need more room.
+  // As low as the ports, unless they need more room. Their links go straight out of the bank, below their
+  // label, then in a bend.
   void place_banks(double top) {
-    double ports = -kBetweenPorts;
-    for (const Port& port : ports_) ports += port.box.height + kBetweenPorts;
-    double banks = -kBetweenBanks;
-    for (const Bank& bank : banks_) banks += bank.box.height + kBetweenBanks;
-    double y = std::max(top + kNameStep + 4, fpga_.y + kFpgaTitle + ports + kFpgaFoot - banks);
+    double height = -kBetweenBanks;
+    for (const Bank& bank : banks_) height += bank.box.height + kBetweenBanks;
+    double y = std::max(top + kNameStep + 4, fpga_.bottom() - height);
     blocks_ += text_element(fmt::format("SSRAM: {} MHz, one access a cycle", board_.fpga.clock_mhz), kNote,
                             kMargin, y - kNameStep - 4, kBankWidth);
     for (Bank& bank : banks_) {
       bank.box.y = y;
-      for (const auto& [edge, end] : bank.ends) edges_[edge].way = {{kBankRight, y + end}};
+      for (const auto& [edge, end] : bank.ends)
+        edge->way.insert(edge->way.end(), {{kBankRight + kBendsFromBank, y + end}, {kBankRight, y + end}});
       y = bank.box.bottom() + kBetweenBanks;
     }
-  }
-
-  // Places the ports one below the other, and lays out their links: straight out of the bank, below its
-  // label, then in a bend. Returns the bottom of the last port.
-  double place_ports() {
-    double y = fpga_.y + kFpgaTitle;
-    for (Port& port : ports_) {
-      port.box.y = y;
-      double end = port.box.middle_y() - port.bundle / 2;
-      for (const std::size_t edge : port.edges) {
-        const Point at_bank = edges_[edge].way.front();
-        end += edges_[edge].width / 2;
-        edges_[edge].way = {
-            {port.box.x, end}, {fpga_.x, end}, {kBankRight + kBendsFromBank, at_bank.y}, at_bank};
-        end += edges_[edge].width / 2 + kBetweenEdges;
-      }
-      y = port.box.bottom() + kBetweenPorts;
-    }
-    fpga_.height = y - kBetweenPorts + kFpgaFoot - fpga_.y;
-    return y - kBetweenPorts;
   }
 
   // Opens the group of a block, and draws its box.
@@ -545,6 +540,15 @@ class Chart {
     blocks_ += fmt::format("<g id=\"{}\" class=\"block{}\">\n", xml_text(id), limits ? " limits" : "") +
                title_element(title) + rect_element(box, 4, paint("fill", fill)) +
                frame_element(box, 4, limits ? "ink" : "line", limits ? 3 : 1);
+  }
+
+  // Notes one below the other. Returns where the next one begins.
+  double draw_notes(const Lines& lines, double x, double y, double width) {
+    for (const std::string& line : lines) {
+      blocks_ += text_element(line, kNote, x, y, width);
+      y += kNoteStep;
+    }
+    return y;
   }
 
   // A line of a bank: a text at each of its ends. The left one is cut to the room that the right one leaves.
@@ -575,35 +579,35 @@ class Chart {
     std::string rate = short_number(4 * traits.ports * board_.fpga.clock_mhz) + " MB/s";
     if (run_ != nullptr)
       rate = fmt::format("{} of {}", measured(run_->banks[index].megabytes_per_second), rate);
-    const Box inside{bank.box.x + kBankPadding, 0, bank.box.width - 2 * kBankPadding, 0};
-    double y = bank.box.y + kPadding;
     open_block("bank-" + bank.name, fmt::format("{}: {}\n{}, {}{}", name, rate, size, kind, held), bank.box,
                run_ == nullptr ? "memory" : "free");
-    const double busy = run_ == nullptr ? 0 : 100 * run_->banks[index].utilization;
-    const std::string load = load_colour(busy, 100);
-    if (run_ != nullptr) blocks_ += rect_element(bank.box, 4, paint("fill", load) + " fill-opacity=\"0.2\"");
-    draw_bank_line(bank.box, y, name, kName, rate);
-    y += kNameStep;
-    if (run_ != nullptr) {
-      const Box bar = {inside.x + 90, y + 2.5, inside.width - 90, 8};
-      blocks_ += text_element(fmt::format("busy {} %", measured(busy)), kNote, inside.x, y, 90) +
-                 rect_element(bar, 2, paint("fill", "free")) +
-                 rect_element({bar.x, bar.y, bar.width * busy / 100, 8}, 2, paint("fill", load)) +
-                 frame_element(bar, 2, "line", 0.75);
-      y += kNoteStep;
+    Box bar{bank.box.x + kBankPadding, bank.box.y + kPadding + kNameStep, bank.box.width - 2 * kBankPadding,
+            6};
+    if (run_ == nullptr) {
+      draw_bank_line(bank.box, bank.box.y + kPadding, name, kName, rate);
+    } else {
+      const double busy = 100 * run_->banks[index].utilization;
+      const std::string load = paint("fill", load_colour(busy, 100));
+      const Box shares{bar.x + 90, bar.y + 2.5, bar.width - 90, 8};
+      blocks_ += rect_element(bank.box, 4, load + " fill-opacity=\"0.2\"");
+      draw_bank_line(bank.box, bank.box.y + kPadding, name, kName, rate);
+      blocks_ += text_element(fmt::format("busy {} %", measured(busy)), kNote, bar.x, bar.y, 90) +
+                 rect_element(shares, 2, paint("fill", "free")) +
+                 rect_element({shares.x, shares.y, shares.width * busy / 100, 8}, 2, load) +
+                 frame_element(shares, 2, "line", 0.75);
+      bar.y += kNoteStep;
     }
-    draw_bank_line(bank.box, y, size, kNote, kind);
-    y += kNoteStep + 2;
-    const Box bar = {inside.x, y, inside.width, 6};
+    draw_bank_line(bank.box, bar.y, size, kNote, kind);
+    bar.y += kNoteStep + 2;
     blocks_ += rect_element(bar, 2, paint("fill", "free"));
-    double x = bar.x;
+    Box part = bar;
     for (const Held& buffer : bank.buffers) {
-      const Box part{x, y, bar.width * static_cast<double>(buffer.words) / static_cast<double>(all_words), 6};
+      part.width = bar.width * static_cast<double>(buffer.words) / static_cast<double>(all_words);
       blocks_ += rect_element(part, 0, paint("fill", "used")) + frame_element(part, 0, "memory", 1);
       draw_bank_line(bank.box, bank.box.y + buffer.y, buffer.label, kPlain, grouped(buffer.words));
-      x = part.right();
+      part.x = part.right();
     }
-    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, bar.x, y + 8, bar.width);
+    if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, bar.x, bar.y + 8, bar.width);
     blocks_ += frame_element(bar, 2, "line", 0.75) + "</g>\n";
   }
 
@@ -621,58 +625,58 @@ class Chart {
   }
 
   // A block of the height of its lines.
-  Box draw_stage(const std::string& id, double x, double middle_y, double width) {
-    const Box box{x, middle_y - height_of(id) / 2, width, height_of(id)};
-    draw_block(id, box);
-    return box;
+  void draw_stage(const std::string& id, double x, double middle_y, double width) {
+    draw_block(id, {x, middle_y - height_of(id) / 2, width, height_of(id)});
+  }
+
+  // Blocks of equal size beside each other.
+  void draw_row(const Lines& ids, Box box, const std::string& fill) {
+    for (const std::string& id : ids) {
+      draw_block(id, box, id == "part-host_memory" ? "memory" : fill);
+      box.x = box.right() + kBetweenParts;
+    }
   }
 
   // The way of pixels and results inside the FPGA. It carries no words of the memories.
-  void draw_flow(const std::string& name, const Point& from, const Point& to) {
-    flows_ += fmt::format("<g id=\"flow-{}\" class=\"flow\">\n{}</g>\n", name,
-                          arrow_element({from, to}, true, false, 1, "line"));
+  void draw_flow(const std::string& from, const std::string& to) {
+    flows_ +=
+        fmt::format("<g id=\"flow-{}-{}\" class=\"flow\">\n{}</g>\n", name_of_block(from), name_of_block(to),
+                    arrow_element(way_between(boxes_.at(from), boxes_.at(to)), true, false, 1, "line"));
   }
 
-  void draw_core(double ports_bottom) {
-    for (const Port& port : ports_) draw_block("port-" + port.name, port.box);
+  void draw_core() {
+    for (const std::string& port : ports_) draw_block(port, boxes_.at(port));
     const double lane_x = fpga_.x + kFpgaPadding + kPortWidth + kBetweenStages;
     const double matcher_x = lane_x + kLaneWidth + kBetweenStages;
     const double check_x = matcher_x + kMatcherWidth + kBetweenStages;
-    Box matcher{matcher_x, boxes_.at("port-left_pixel").y, kMatcherWidth, 0};
-    for (const std::string side : {"left", "right"}) {
-      const Box pixels = boxes_.at("port-" + side + "_pixel");
-      const Box lane = draw_stage("stage-" + side + "_lane", lane_x, pixels.middle_y(), kLaneWidth);
-      const double y = lane.middle_y();
-      draw_flow(side + "_pixel-" + side + "_lane", {pixels.right(), y}, {lane.x, y});
-      draw_flow(side + "_lane-matcher", {lane.right(), y}, {matcher_x, y});
-      matcher.height = std::max(pixels.bottom() - matcher.y, height_of("stage-matcher"));
-      // From the port of the side's table to its pixel port, which is the next one above or below.
-      const std::string table = board_.fpga.joint_tables ? "left_lut" : side + "_lut";
-      if (boxes_.count("port-" + table) == 0) continue;
-      const Box& lut = boxes_.at("port-" + table);
-      const double x = pixels.middle_x();
-      const bool is_above = lut.y < pixels.y;
-      draw_flow(table + "-" + side + "_pixel", {x, is_above ? lut.bottom() : lut.y},
-                {x, is_above ? pixels.y : pixels.bottom()});
-    }
+    const Box& left = boxes_.at("port-left_pixel");
+    const Box& right = boxes_.at("port-right_pixel");
+    const Box matcher{matcher_x, left.y, kMatcherWidth,
+                      std::max(right.bottom() - left.y, height_of("stage-matcher"))};
+    draw_stage("stage-left_lane", lane_x, left.middle_y(), kLaneWidth);
+    draw_stage("stage-right_lane", lane_x, right.middle_y(), kLaneWidth);
     draw_block("stage-matcher", matcher);
-    const Box check = draw_stage("stage-lr_check", check_x, matcher.middle_y(), kCheckWidth);
-    draw_flow("matcher-lr_check", {matcher.right(), check.middle_y()}, {check.x, check.middle_y()});
-    const Box result = boxes_.at("port-result");
-    const Box queue = draw_stage("stage-result_queue", check_x, result.middle_y(), kCheckWidth);
-    draw_flow("lr_check-result_queue", {check.middle_x(), check.bottom()}, {check.middle_x(), queue.y});
-    draw_flow("result_queue-result", {queue.x, queue.middle_y()}, {result.right(), queue.middle_y()});
+    draw_stage("stage-lr_check", check_x, matcher.middle_y(), kCheckWidth);
+    draw_stage("stage-result_queue", check_x, boxes_.at("port-result").middle_y(), kCheckWidth);
+    for (const std::string side : {"left", "right"}) {
+      const std::string pixels = "port-" + side + "_pixel";
+      const std::string lane = "stage-" + side + "_lane";
+      const std::string table = board_.fpga.joint_tables ? "port-left_lut" : "port-" + side + "_lut";
+      draw_flow(pixels, lane);
+      draw_flow(lane, "stage-matcher");
+      if (boxes_.count(table) > 0) draw_flow(table, pixels);
+    }
+    draw_flow("stage-matcher", "stage-lr_check");
+    draw_flow("stage-lr_check", "stage-result_queue");
+    draw_flow("stage-result_queue", "port-result");
 
-    const double width = kFpgaWidth - 2 * kFpgaPadding;
     blocks_ += text_element(fmt::format("FPGA {}: {} MHz", board_.fpga.device, board_.fpga.clock_mhz), kName,
                             fpga_.right() - kFpgaPadding, fpga_.y + 7, kFpgaWidth / 2, "end");
     Lines priority;
     for (const memory::Port each : board_.fpga.arbiter.priority)
       priority.emplace_back(fpga::kPortGroups[each].name);
-    blocks_ += text_element("each bank: " + board_.fpga.arbiter.policy, kNote, fpga_.x + kFpgaPadding,
-                            ports_bottom + 10, width) +
-               text_element(fmt::format("{}", fmt::join(priority, ", ")), kNote, fpga_.x + kFpgaPadding,
-                            ports_bottom + 10 + kNoteStep, width);
+    draw_notes({"each bank: " + board_.fpga.arbiter.policy, fmt::format("{}", fmt::join(priority, ", "))},
+               fpga_.x + kFpgaPadding, fpga_.bottom() - kFpgaFoot + 10, kFpgaWidth - 2 * kFpgaPadding);
   }
 
   // Draws what is around the board, above the FPGA. Returns where the FPGA begins.
@@ -683,60 +687,37 @@ class Chart {
     const double left = fpga_.x;
     const auto count = static_cast<double>(parts.size());
     const double width = (kFpgaWidth - (count - 1) * kBetweenParts) / count;
-    const double camera_height = height_of("part-left_camera");
-    const double parts_y = top + camera_height + kShortEdge;
-    Box box{left, parts_y, width, height_of("part-left_capture")};
-    for (const std::string& part : parts) {
-      draw_block(part, box, part == "part-host_memory" ? "memory" : "computer");
-      box.x = box.right() + kBetweenParts;
-    }
-    const Box pci{left, box.bottom() + kShortEdge, kFpgaWidth, kBusHeight};
-    box = {left, top, width, camera_height};
-    for (const char* const part : {"part-left_camera", "part-right_camera"}) {
-      draw_block(part, box, "computer");
-      box.x = box.right() + kBetweenParts;
-    }
-    draw_block("part-pci", pci, "bus");
+    const Box camera{left, top, width, height_of("part-left_camera")};
+    const Box part{left, camera.bottom() + kShortEdge, width, height_of("part-left_capture")};
+    const Box pci{left, part.bottom() + kShortEdge, kFpgaWidth, kBusHeight};
     const Box bridge{left, pci.bottom() + kShortEdge, kBridgeWidth, height_of("part-bridge")};
-    draw_block("part-bridge", bridge, "computer");
     const Box local{left, bridge.bottom() + kShortEdge, kBridgeWidth, height_of("part-local_bus")};
+    draw_row(parts, part, "computer");
+    draw_row({"part-left_camera", "part-right_camera"}, camera, "computer");
+    draw_block("part-pci", pci, "bus");
+    draw_block("part-bridge", bridge, "computer");
     draw_block("part-local_bus", local, "bus");
     draw_legend({left + kBridgeWidth + 24, pci.bottom() + 14});
     return local.bottom() + kShortEdge;
   }
 
-  // The links around the board, straight down or up. Each leaves the narrower block in its middle; the two
-  // between PCI bus and bridge lie side by side.
+  // The links around the board. The two between PCI bus and bridge lie side by side.
   void connect_parts() {
     for (Edge& edge : edges_) {
       if (!edge.way.empty()) continue;  // that of a bank
-      const Box& from = boxes_.at(edge.link.from);
-      const Box& to = boxes_.at(edge.link.to);
-      double x = (from.width < to.width ? from : to).middle_x();
-      if (edge.link.id() == "edge-pci-bridge") x -= kBridgeWidth / 5;
-      if (edge.link.id() == "edge-bridge-pci") x += kBridgeWidth / 5;
-      edge.way = from.y < to.y ? std::vector<Point>{{x, from.bottom()}, {x, to.y}}
-                               : std::vector<Point>{{x, from.y}, {x, to.bottom()}};
+      const std::string id = edge.link.id();
+      const double beside = kBridgeWidth / 5;
+      edge.way = way_between(boxes_.at(edge.link.from), boxes_.at(edge.link.to),
+                             id == "edge-pci-bridge"   ? -beside
+                             : id == "edge-bridge-pci" ? beside
+                                                       : 0);
     }
-  }
-
-  // Returns its bottom.
-  double draw_heading() {
-    const double width = fpga_.right() - kMargin;
-    blocks_ += text_element(board_.name, kHeading, kMargin, kMargin, width);
-    double y = kMargin + 24;
-    for (const std::string& line : subtitle_of(view_)) {
-      blocks_ += text_element(line, kNote, kMargin, y, width);
-      y += kNoteStep;
-    }
-    return y + 12;
   }
 
   void draw_legend(const Point& at) {
     double y = at.y;
     for (const std::string& line : legend_of(view_)) {
-      blocks_ += text_element(line, kNote, at.x, y, fpga_.right() - at.x);
-      y += kNoteStep;
+      y = draw_notes({line}, at.x, y, fpga_.right() - at.x);
       if (line.find("Colour") == std::string::npos) continue;
       constexpr double kSwatch = 56;
       for (std::size_t step = 0; step <= kLoadSteps.size(); ++step) {
@@ -785,11 +766,11 @@ class Chart {
   const Statistics* run_;
   std::set<std::string> limiting_;
   std::map<std::string, Lines> lines_;  // of each block but the banks, by its id
-  std::map<std::string, Box> boxes_;    // of those that are drawn
+  std::map<std::string, Box> boxes_;    // of those that are placed
   std::vector<Edge> edges_;             // in the order of chart_links()
   std::vector<Bank> banks_;             // in the order of the board
-  std::vector<Port> ports_;             // from top to bottom
-  Box fpga_;
+  std::vector<std::string> ports_;      // their ids, from top to bottom
+  Box fpga_{kBankRight + kBendsFromBank + kBendWidth, 0, kFpgaWidth, 0};
   double legend_bottom_ = 0;
   std::string flows_;  // SVG
   std::string blocks_;
