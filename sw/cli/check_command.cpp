@@ -10,6 +10,7 @@
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/output_file.h"
+#include "sw/files/whole_file.h"
 #include "sw/process/client.h"
 
 namespace stereotlm::cli {
