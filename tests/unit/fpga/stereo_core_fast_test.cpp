@@ -1,4 +1,4 @@
-// Frames that work directly on memory: bursts that are a hazard, and memory that takes its direct access back.
+// Frames that work directly on memory: bursts that are a hazard, and memory that takes its access back.
 #include <gtest/gtest.h>
 
 #include <memory>

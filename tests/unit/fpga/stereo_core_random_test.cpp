@@ -203,8 +203,8 @@ class HostedRun {
          write ? Words() : bus_.answers.back().words);
   }
 
-  // New table entries, all or one at an end: over the bus, where a frame may begin within the burst, or behind
-  // its back.
+  // New table entries, all or one at an end: over the bus, where a frame may begin within the burst, or by
+  // debug transport.
   void change_table(SplitMix64& random) {
     Words words = entries(random);
     std::uint64_t address = crossbar_address(random.chance(50) ? 0 : any_bank(random),
