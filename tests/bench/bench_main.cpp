@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <systemc>
@@ -25,18 +27,54 @@
 #include "models/kernels/stereo.h"
 #include "models/kernels/stereo_pipeline.h"
 #include "platform/config/board_yaml.h"
+#include "sw/demo/half_size.h"
 #include "sw/files/whole_file.h"
+#include "sw/media/load.h"
 #include "sw/process/child.h"
 #include "sw/runs/simulation/simulation.h"
 #include "sw/runs/sources/open_source.h"
 #include "sw/stats/stats_json.h"
-#include "tests/bench/bench_pair.h"
 #include "tests/bench/board_process.h"
 
 namespace stereotlm::bench {
 namespace {
 
 using fpga::Fidelity;
+using kernels::GrayImage;
+
+struct BenchPair {
+  host::StereoPair pair;  // 640x480
+  std::string origin;     // "aloe" or "random texture"
+};
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 480;
+constexpr int kShift = 20;  // columns
+
+host::StereoPair random_texture() {
+  std::mt19937 random(1);
+  GrayImage wide(kWidth + kShift, kHeight);
+  for (auto& pixel : wide.pixels) pixel = static_cast<std::uint8_t>(random());
+  host::StereoPair pair{GrayImage(kWidth, kHeight), GrayImage(kWidth, kHeight)};
+  for (int row = 0; row < kHeight; ++row) {
+    for (int column = 0; column < kWidth; ++column) {
+      pair.left.at(column, row) = wide.at(column, row);
+      pair.right.at(column, row) = wide.at(column + kShift, row);
+    }
+  }
+  return pair;
+}
+
+// The pair of ./demo, made from the pictures in `folder`. Without these pictures it is a random texture and a
+// copy that is shifted by 20 columns.
+BenchPair bench_pair(const std::string& folder) {
+  const std::filesystem::path pictures(folder);
+  if (!std::filesystem::exists(pictures / "aloeL.jpg")) return {random_texture(), "random texture"};
+  const auto side = [&pictures](const char* name) {
+    return demo::middle_at_half_size(media::load_gray((pictures / name).string()).image);
+  };
+  return {{side("aloeL.jpg"), side("aloeR.jpg")}, "aloe"};
+}
 
 // The buffers of a contended board lie in one bank each, so that every frame is contended.
 struct Case {

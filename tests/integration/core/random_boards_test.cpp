@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 #include <set>
@@ -245,41 +244,6 @@ std::string text_of(const std::vector<kernels::GrayImage>& disparities) {
     text += '\n';
   }
   return text;
-}
-
-std::string text_of(const platform::Statistics& statistics) {
-  std::string text;
-  for (const auto& [name, value] : figures(statistics)) text += name + " = " + std::to_string(value) + '\n';
-  for (const double value : {statistics.frames_per_second.core, statistics.bound.core}) {
-    char exact[40];
-    std::snprintf(exact, sizeof exact, "%a\n", value);
-    text += exact;
-  }
-  return text + statistics.bound.core_limited_by;
-}
-
-// Leaves the heap full of `byte`, so that an uninitialised value differs between two runs.
-void dirty_heap(char byte) {
-  for (std::size_t size = 16; size < (1U << 20U); size = size * 5 / 4) {
-    const std::vector<std::string> blocks(8, std::string(size, byte));
-    ASSERT_EQ(blocks.back().back(), byte);
-  }
-}
-
-TEST_P(RandomBoards, GiveTheSameStatisticsAgain) {
-  for (std::uint64_t seed = 10'000; seed < 10'010; ++seed) {
-    const RandomBoard board = board_of(seed, GetParam());
-    SCOPED_TRACE(describe(board));
-    std::vector<std::string> runs;
-    for (const char byte : {'\x5A', '\xFF'}) {
-      runs.push_back(run_for_text([&] {
-        dirty_heap(byte);
-        const PreloadedRun run = run_board(board, board_config(board));
-        return text_of(run.statistics) + text_of(run.disparity);
-      }));
-    }
-    EXPECT_EQ(runs[0], runs[1]);
-  }
 }
 
 // All buffers in one bank, a bank for each, and the board's own sharing.

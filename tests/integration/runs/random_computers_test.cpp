@@ -413,68 +413,6 @@ TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
 
-// Captures into banks that the frame uses. Over many frames, bursts of the cameras come again in the same
-// state of the core.
-class LongContendedRun : public testing::TestWithParam<std::vector<std::string>> {};
-
-// The figures of a board with these keys, and with `is_recorded` the rows of its frames.
-std::string figures_of_long_run(const std::vector<std::string>& keys, Fidelity fidelity, bool is_recorded) {
-  std::vector<std::string> all = {"image={width: 96, height: 64}", "cameras.frame_rate_hz=397.1",
-                                  "ssram.default.words=524288"};
-  all.insert(all.end(), keys.begin(), keys.end());
-  const platform::BoardConfig board = platform::load_board("fpl2003", all);
-  const auto pairs = runs::blank_pairs(board);
-  const platform::Tables tables = platform::identity_tables(board);
-  test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
-  runs::CameraSimulation simulation(board, tables, *pairs, is_recorded ? 12 : 40, binder, fidelity);
-  if (is_recorded) simulation.record_conflicts();
-  Outcome outcome;
-  std::string rows;
-  while (!simulation.finished()) {
-    for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
-    for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
-      rows += stats::rows_csv(board, 0, frame);
-  }
-  outcome.statistics = simulation.statistics();
-  return figures_of(outcome, false) + rows;
-}
-
-void expect_figures_of_steps(const std::vector<std::string>& keys, bool is_recorded) {
-  std::array<std::string, 2> figures;  // each in a process of its own
-  for (const bool is_stepped : {false, true}) {
-    process::Child child([&](const process::Child::Tell& tell) {
-      tell(figures_of_long_run(keys, is_stepped ? Fidelity::kCycleTiming : Fidelity::kTiming, is_recorded));
-    });
-    figures[is_stepped ? 1 : 0] = child.next().value();
-    child.next();
-  }
-  EXPECT_EQ(test::differing_lines(figures[1], figures[0]), "");
-}
-
-TEST_P(LongContendedRun, HasTheFiguresOfItsSteps) { expect_figures_of_steps(GetParam(), false); }
-TEST_P(LongContendedRun, HasTheRowsOfItsSteps) { expect_figures_of_steps(GetParam(), true); }
-// A line comes in several bursts.
-TEST(LongUncontendedRun, HasTheRowsOfItsSteps) {
-  expect_figures_of_steps({"capture.fifo_trigger_words=4"}, true);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Allocations, LongContendedRun,
-    testing::Values(std::vector<std::string>{"allocation.left_image=[bank6, bank7]"},
-                    std::vector<std::string>{"allocation.left_image=[bank6, bank7]",
-                                             "fpga.arbitration=round_robin"},
-                    std::vector<std::string>{
-                        "allocation.left_image=[bank6, bank7]",
-                        "fpga.priority=[result, left_lut, host, left_pixel, right_pixel, right_lut]"},
-                    std::vector<std::string>{"allocation.left_image=[bank6, bank7]",
-                                             "ssram.banks.bank6={kind: sync_burst, turnaround_cycles: 2}"},
-                    std::vector<std::string>{"allocation.left_image=[bank6, bank6]",
-                                             "allocation.right_image=[bank6, bank4]"},
-                    std::vector<std::string>{"allocation.left_image=[bank0, bank0]",
-                                             "allocation.right_image=[bank0, bank0]",
-                                             "allocation.disparity=[bank0, bank0]",
-                                             "allocation.left_lut=bank0", "allocation.right_lut=bank0"}));
-
 // The bridge copies pictures as fast as it can. Returns the rate as a share of its bound, or what has failed.
 std::string share_of_bound(double local_mhz, int burst_words) {
   const platform::BoardConfig board = platform::load_board(

@@ -181,42 +181,6 @@ std::string plain_part_of(const test::PlainComputerResult& plain, const TimeRang
   return text;
 }
 
-// Where the sums of a whole trace differ from the figures of its run.
-std::string differing_sums(const KeptBuses& buses, const platform::BoardConfig& board,
-                           const platform::ComputerStatistics& figures) {
-  const Clock pci(board.pci.clock_mhz);
-  const auto clocks = [&pci](std::uint64_t from_ps, std::uint64_t to_ps) {
-    return pci.edge_at_or_after(to_ps) - pci.edge_at_or_after(from_ps);
-  };
-  std::map<std::string, platform::PciMasterStatistics> masters;
-  std::uint64_t busy_clocks = 0;
-  for (const BusBurst& burst : buses.pci) {
-    platform::PciMasterStatistics& master = masters[burst.master];
-    ++master.transactions;
-    master.words += burst.words;
-    master.wait_clocks += clocks(burst.request_ps, burst.address_ps);
-    busy_clocks += clocks(burst.address_ps, burst.end_ps);
-  }
-  std::string text;
-  for (const platform::PciMasterStatistics& master : figures.pci_masters) {
-    const platform::PciMasterStatistics& sum = masters[master.name];
-    if (std::tie(sum.transactions, sum.words, sum.wait_clocks) !=
-        std::tie(master.transactions, master.words, master.wait_clocks))
-      text += "sums of " + master.name + " differ\n";
-  }
-  if (busy_clocks != figures.pci_busy_clocks) text += "busy clocks of the PCI bus differ\n";
-  std::uint64_t posted = 0;
-  std::uint64_t before = 0;
-  if (const auto found = buses.levels.find("posted"); found != buses.levels.end()) {
-    for (const QueueLevel& level : found->second) {
-      posted += level.words > before ? level.words - before : 0;
-      before = level.words;
-    }
-  }
-  if (posted != figures.posted_words) text += "posted words differ\n";
-  return text;
-}
-
 fpga::Requesters requesters_of(const platform::BoardConfig& board) {
   return fpga::Requesters(platform::core_ports(board));
 }
@@ -392,11 +356,9 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   for (const auto& [link, probe] : binder.probes()) traced.seen.emplace_back(link, probe->accesses());
   traced.statistics = simulation->statistics();
   traced.buses = buses.text();
-  if (of.computer && fidelity == Fidelity::kCycle) {
+  if (of.computer && fidelity == Fidelity::kCycle)
     traced.wrong_files += test::differing_lines(plain_part_of(test::run_plain_computer(*of.computer), range),
                                                 buses.plain_part());
-    if (!keeps_cycles) traced.wrong_files += differing_sums(buses, of.board, *traced.statistics.computer);
-  }
   if (keeps_cycles) {
     traced.waveform = test::read_file(paths["vcd"]);
   } else {  // all cycles are in the window

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -229,57 +228,6 @@ TEST(RowBufferArea, HoldsTheValidBitsOfTheLeftTable) {
   without_table.left_table = false;
   expect_all("row buffers",
              {{plain, block_rams(2 + 2)}, {filtered, block_rams(3 + 2)}, {without_table, block_rams(2 + 2)}});
-}
-
-// A core that is larger in one dimension is smaller in no resource.
-void expect_growth(const std::vector<CoreConfig>& series) {
-  Area before;
-  for (const CoreConfig& config : series) {
-    const Area area = total(items(config), kDevices[0]);
-    const std::string which =
-        "window " + std::to_string(config.window) + ", disparities " + std::to_string(config.disparities);
-    EXPECT_GE(area.slices, before.slices) << which;
-    EXPECT_GE(area.luts, before.luts) << which;
-    EXPECT_GE(area.flip_flops, before.flip_flops) << which;
-    EXPECT_GE(area.block_rams, before.block_rams) << which;
-    before = area;
-  }
-  const Area least = total(items(series.front()), kDevices[0]);
-  EXPECT_GT(before.slices + before.block_rams, least.slices + least.block_rams);
-}
-
-// `enlarge` makes a core one step larger, and returns false at the end of the range.
-void expect_growth(CoreConfig first, const std::function<bool(CoreConfig&)>& enlarge) {
-  for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
-    for (const bool filter : {false, true}) {
-      CoreConfig config = first;
-      config.fetch = fetch;
-      if (!filter) config.filter.reset();
-      std::vector<CoreConfig> series;
-      do series.push_back(config);
-      while (enlarge(config));
-      expect_growth(series);
-    }
-  }
-}
-
-TEST(AreaItems, GrowWithTheDisparitiesTheWindowAndTheQueues) {
-  expect_growth(core(kDisparities, 1), [](CoreConfig& config) { return ++config.disparities <= 254; });
-  expect_growth(core(kWindow, 3), [](CoreConfig& config) { return (config.window += 2) <= 31; });
-  expect_growth(core(kLaneSlots, 2, kResultWords, 2), [](CoreConfig& config) {
-    return ++config.lane_fifo_slots <= 64 && ++config.result_fifo_words;
-  });
-}
-
-TEST(AreaItems, TakeMoreBlockRamForWiderImages) {
-  for (const Fetch fetch : {Fetch::kColumn, Fetch::kLineBuffer}) {
-    std::int64_t before = 0;
-    for (int width = 4; width <= 2048; width += 4) {
-      const std::int64_t found = total(items(core(kFetch, fetch, kWidth, width)), kDevices[0]).block_rams;
-      EXPECT_GE(found, before) << width;
-      before = found;
-    }
-  }
 }
 
 }  // namespace

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/test_host.h"
+#include "tests/support/refused_access.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {
@@ -76,42 +75,19 @@ TEST_F(RegisterFileTest, DrivesTheInterruptAtTheEndOfAFrameAndAtItsAcknowledgeme
 
 TEST_F(RegisterFileTest, RefusesAccessesThatAreNotOneWordOfARegister) {
   const test::ExpectedReport refusal("/stereotlm/refused_access");
-  struct Access {
-    std::uint64_t address = registers::kLeftImageBase;
-    unsigned length = 4;
-    unsigned streaming_width = 8;
-    bool has_enables = false;
-    tlm::tlm_command command = tlm::TLM_WRITE_COMMAND;
-    tlm::tlm_response_status response = tlm::TLM_BURST_ERROR_RESPONSE;
+  const auto write = tlm::TLM_WRITE_COMMAND;
+  constexpr std::uint64_t kBase = registers::kLeftImageBase;
+  const test::RefusedAccess accesses[] = {
+      {tlm::TLM_BURST_ERROR_RESPONSE, write, kBase, 1, 8},
+      {tlm::TLM_BURST_ERROR_RESPONSE, write, kBase, 3, 8},
+      {tlm::TLM_BURST_ERROR_RESPONSE, write, kBase, 8, 8},
+      {tlm::TLM_BURST_ERROR_RESPONSE, write, kBase, 4, 3},
+      {tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, write, kBase, 4, 4, 4},
+      {tlm::TLM_ADDRESS_ERROR_RESPONSE, write, kBase + 2},
+      {tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_IGNORE_COMMAND, kBase},
   };
-  std::vector<Access> accesses(7);
-  accesses[0].length = 1;
-  accesses[1].length = 3;
-  accesses[2].length = 8;
-  accesses[3].streaming_width = 3;
-  accesses[4].has_enables = true;
-  accesses[4].response = tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE;
-  accesses[5].address += 2;
-  accesses[5].response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
-  accesses[6].command = tlm::TLM_IGNORE_COMMAND;
-  accesses[6].response = tlm::TLM_COMMAND_ERROR_RESPONSE;
-  std::array<unsigned char, 8> data;
-  data.fill(0xFF);
-  for (const Access& access : accesses) {
-    tlm::tlm_generic_payload payload;
-    payload.set_command(access.command);
-    payload.set_address(access.address);
-    payload.set_data_ptr(data.data());
-    payload.set_data_length(access.length);
-    payload.set_streaming_width(access.streaming_width);
-    if (access.has_enables) payload.set_byte_enable_ptr(data.data());
-    payload.set_byte_enable_length(access.has_enables ? 4 : 0);
-    sc_core::sc_time delay;
-    host.socket->b_transport(payload, delay);
-    EXPECT_EQ(payload.get_response_status(), access.response);
-    EXPECT_EQ(delay, sc_core::SC_ZERO_TIME);
-  }
-  EXPECT_EQ(file.stats().errors, accesses.size());
+  for (const test::RefusedAccess& access : accesses) test::expect_refused(host.socket, access);
+  EXPECT_EQ(file.stats().errors, std::size(accesses));
   EXPECT_TRUE(starts.beats.empty());
   EXPECT_EQ(host.read(registers::kLeftImageBase).word, 0U);
   binder.take_violations();

@@ -11,7 +11,6 @@
 #include "models/memory/ssram_bank.h"
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
-#include "tests/unit/fpga/random_core.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {
@@ -70,9 +69,16 @@ TEST_F(LutReaderTest, TakesARefusedAccessForAnEntryThatIsNotValid) {
   EXPECT_EQ(stage.errors(), 1U);
 }
 
+CoreConfig core_of_image(int width, int height) {
+  CoreConfig core;
+  core.width = width;
+  core.height = height;
+  return core;
+}
+
 class PixelReaderTest : public StageTest<PixelReader> {
  protected:
-  PixelReaderTest() : StageTest(small_core(8, 4), 0) {
+  PixelReaderTest() : StageTest(core_of_image(8, 4), 0) {
     stage.pixels_out.bind(pixels);
     elaborate();
     stage.start_frame(Placement({}, 2, 2));

@@ -17,7 +17,6 @@
 #include "models/memory/ssram_bank.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/test_host.h"
-#include "tests/unit/fpga/random_core.h"
 #include "tests/unit/fpga/stream_ends.h"
 
 namespace stereotlm::fpga {
@@ -40,7 +39,11 @@ class StereoCoreBench : public testing::Test {
 
   static StereoCoreConfig small_board() {
     StereoCoreConfig config;
-    config.core = small_core(8, 6);
+    config.core.width = 8;
+    config.core.height = 6;
+    config.core.window = 3;
+    config.core.disparities = 3;
+    config.core.filter.reset();
     config.core.pipeline_latency_cycles = 5;
     config.memory.banks.assign(kBankCount, {kWords});
     return config;
@@ -102,12 +105,6 @@ class StereoCoreBench : public testing::Test {
   // The start of a clock cycle.
   sc_core::sc_time edge(std::uint64_t cycle) const { return kernel_time::to_time(clock->edge_ps(cycle)); }
   static void run_until(const sc_core::sc_time& time) { sc_core::sc_start(time - sc_core::sc_time_stamp()); }
-  // One frame on this board.
-  void run(const StereoCoreConfig& board) {
-    build(board);
-    start();
-    finish();
-  }
   // Lets everything come to an end.
   void finish() { run_until(sc_core::sc_time_stamp() + edge(5000)); }
   // Does something in a process of its own, at this time.
@@ -127,15 +124,9 @@ class StereoCoreBench : public testing::Test {
   std::uint64_t pipeline() const { return static_cast<std::uint64_t>(config.core.pipeline_latency_cycles); }
   PortCycles port(memory::Port which) const { return core->control().port_cycles(which); }
   // Words that reached a bank by transport, and directly.
-  std::uint64_t transported(std::uint32_t bank) const {
-    return banks[bank]->stats().reads + banks[bank]->stats().writes;
-  }
   std::uint64_t accesses(std::uint32_t bank) const {
-    return transported(bank) + core->crossbar().direct_accesses(bank) +
+    return banks[bank]->stats().reads + banks[bank]->stats().writes + core->crossbar().direct_accesses(bank) +
            core->frames().direct_counts().accesses[bank];
-  }
-  std::uint64_t blamed(std::uint32_t bank, memory::Port victim, memory::Port by) const {
-    return core->crossbar().arbitration().stats(bank).blame(victim, by);
   }
 
   StereoCoreConfig config;

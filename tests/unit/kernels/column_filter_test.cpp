@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -72,47 +71,18 @@ void expect_two_frames(const RandomBoard& board, const Strips& cut, SplitMix64& 
   }
 }
 
-// Column fetch: the rows of `rows` windows at once, from the first strip that the matcher needs.
-void expect_filtered_by_columns(const RandomBoard& board, int rows, SplitMix64& random) {
+// Column fetch: the rows of a window at once, from the first strip that the matcher needs.
+void expect_filtered_by_columns(const RandomBoard& board, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
   const int radius = (board.window - 1) / 2;
-  const int lead = (std::max(0, half - radius) + rows - 1) / rows;
-  const int strips = lead + (board.height + rows - 1) / rows;
-  expect_two_frames(board, {board.window + rows - 1, rows, half - radius - lead * rows, strips}, random);
+  const int lead = std::max(0, half - radius);
+  expect_two_frames(board, {board.window, 1, half - radius - lead, lead + board.height}, random);
 }
 
 // Line buffers: one row at a time, from the first row of the image.
 void expect_filtered_by_rows(const RandomBoard& board, SplitMix64& random) {
   const int half = board.filter ? (board.filter->size - 1) / 2 : 0;
   expect_two_frames(board, {1, 1, 0, board.height + half + (board.window - 1) / 2}, random);
-}
-
-test::ReferenceKernel differences_kernel(int size) {
-  test::ReferenceKernel kernel{size, {}, 3};
-  for (int place = 0; place < size * size; ++place) kernel.weights.push_back(place * 7 % 23);
-  const int sum = std::accumulate(kernel.weights.begin(), kernel.weights.end(), 0);
-  kernel.weights[static_cast<std::size_t>(size * size / 2)] -= sum;
-  return kernel;
-}
-
-// Half a kernel is smaller than, equal to and larger than half a window. Windows lie around multiples of the
-// vectors' length, and images go down to the smallest.
-TEST(ColumnFilter, EqualsTheLiteralFilterForEachPairOfSizes) {
-  SplitMix64 random(6);
-  for (const int size : {3, 5, 7, 9, 17, 31}) {
-    for (const int window : {3, 5, 7, 9, 15, 17, 31}) {
-      for (const auto& [width, height] :
-           {std::pair(4, 1), std::pair(4, 40), std::pair(36, 3), std::pair(20, 33)}) {
-        SCOPED_TRACE("kernel " + std::to_string(size) + ", window " + std::to_string(window) + ", image " +
-                     std::to_string(width) + " x " + std::to_string(height));
-        RandomBoard board = test::noise_board(width, height, window, random);
-        board.filter = differences_kernel(size);
-        for (const int rows : {1, 2, 16})
-          ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, rows, random));
-        ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
-      }
-    }
-  }
 }
 
 // 255 * 65793 is the last multiple of 255 below 2^24, up to which a float holds every integer exactly. At
@@ -127,7 +97,7 @@ TEST(ColumnFilter, IsExactOnBothSidesOf24Bits) {
       for (std::uint8_t& pixel : board.pictures[0].left) {
         if (pixel > 60) pixel = random.chance(50) ? 255 : 0;
       }
-      ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, 1, random));
+      ASSERT_NO_FATAL_FAILURE(expect_filtered_by_columns(board, random));
       ASSERT_NO_FATAL_FAILURE(expect_filtered_by_rows(board, random));
     }
   }

@@ -92,14 +92,4 @@ inline kernels::StereoConfig stereo_config(const RandomBoard& board) {
           matching_cost(board.cost)};
 }
 
-// The disparity image of the kernels for the pictures of frame 0.
-inline kernels::GrayImage disparity_image(const RandomBoard& board) {
-  const auto left_table = table(board, board.left_table);
-  const auto right_table = table(board, board.right_table);
-  const PicturePair& pair = board.pictures_of_frame(0);
-  return kernels::disparity_image(gray_image(board, pair.left), gray_image(board, pair.right),
-                                  left_table ? &*left_table : nullptr, right_table ? &*right_table : nullptr,
-                                  stereo_config(board));
-}
-
 }  // namespace stereotlm::test

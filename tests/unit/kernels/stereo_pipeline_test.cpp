@@ -95,16 +95,6 @@ TEST(StereoPipeline, EqualsTheReferenceForEachSizeOfTheLastGroupOfDisparities) {
   }
 }
 
-TEST(StereoPipeline, EqualsTheReferenceOnImagesOfTheLargestWidth) {
-  constexpr int kLargestWidth = 8192;
-  SplitMix64 random(15);
-  for (int cost = 0; cost < test::kCosts; ++cost) {
-    for (const auto& [window, disparities] : {std::pair(3, 9), std::pair(13, 1)})
-      ASSERT_NO_FATAL_FAILURE(
-          expect_noise_matches(kLargestWidth, window + 1, window, disparities, cost, random));
-  }
-}
-
 void expect_filtered(int width, int height, const std::vector<std::uint8_t>& image,
                      const test::ReferenceKernel& kernel) {
   const auto expected = test::reference_filter(width, height, image, kernel);

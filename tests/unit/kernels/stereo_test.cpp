@@ -2,88 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "models/kernels/words.h"
-#include "tests/support/random_board.h"
-#include "tests/support/reference_arithmetic.h"
 #include "tests/unit/kernels/reference_types.h"
 
 namespace stereotlm::kernels {
 namespace {
-
-using test::RandomBoard;
-
-std::vector<int> with_invalid_as_minus_1(const GrayImage& image) {
-  std::vector<int> values;
-  for (const std::uint8_t pixel : image.pixels) values.push_back(pixel == kInvalidDisparity ? -1 : pixel);
-  return values;
-}
-
-void expect_reference(const RandomBoard& board) {
-  const auto expected = test::compute_reference(test::reference_input(board, 0));
-  const GrayImage left = test::gray_image(board, expected.filtered_left);
-  const GrayImage right = test::gray_image(board, expected.filtered_right);
-  const test::Matches matches =
-      test::match(left, right, board.window, board.disparities, test::matching_cost(board.cost));
-  EXPECT_EQ(with_invalid_as_minus_1(matches.right_based), expected.right_based);
-  EXPECT_EQ(with_invalid_as_minus_1(matches.left_based), expected.left_based);
-  if (board.filter) {
-    const GrayImage rectified = test::gray_image(board, expected.rectified_left);
-    EXPECT_EQ(test::filter_image(rectified, *test::filter_kernel(board.filter)).pixels,
-              expected.filtered_left);
-  }
-  EXPECT_EQ(test::disparity_image(board).pixels, expected.disparity);
-}
-
-// The pixels of a pair in four contents: constant, largest sums, extreme noise, a period of three columns.
-std::uint8_t pixel_of(int content, bool left, int column, int row, test::SplitMix64& random) {
-  if (content == 0) return 77;
-  if (content == 1) return left ? 255 : 0;
-  if (content == 2) return random.chance(50) ? 255 : 0;
-  return static_cast<std::uint8_t>(60 * ((column + (left ? 0 : 1)) % 3) + row);
-}
-
-// Image sizes lie on both sides of the window, disparities on both sides of the image's width, and many sums
-// are equal.
-TEST(Stereo, EqualsTheReferenceForEachWindowAndContent) {
-  test::SplitMix64 random(3);
-  int next = 0;
-  for (int window = 3; window <= 31; window += 2) {
-    for (int content = 0; content < 4; ++content) {
-      for (const int width : {(window + 2) / 4 * 4, (window + 30) / 4 * 4}) {
-        for (const int height : {window - 1, window, window + 2}) {
-          RandomBoard board;
-          board.width = std::max(4, width);
-          board.height = height;
-          board.window = window;
-          const int disparities[] = {1, 2, board.width - 1, board.width, 254};
-          board.disparities = disparities[next++ % 5];
-          board.lr_tolerance = next % 3;
-          if (next % 4 == 0) board.lr_tolerance.reset();
-          board.frames = 1;
-          board.cost = test::any_cost(next / 5 + next);
-          board.pictures.resize(1);
-          for (int row = 0; row < height; ++row) {
-            for (int column = 0; column < board.width; ++column) {
-              board.pictures[0].left.push_back(pixel_of(content, true, column, row, random));
-              board.pictures[0].right.push_back(pixel_of(content, false, column, row, random));
-            }
-          }
-          SCOPED_TRACE("window " + std::to_string(window) + ", disparities " +
-                       std::to_string(board.disparities) + ", " + std::to_string(board.width) + " x " +
-                       std::to_string(height));
-          ASSERT_NO_FATAL_FAILURE(expect_reference(board));
-          if (HasFailure()) return;
-        }
-      }
-    }
-  }
-}
 
 TEST(StereoConfig, NamesTheRuleThatItBreaks) {
   const auto found = [](int window, int disparities, std::optional<int> tolerance) {

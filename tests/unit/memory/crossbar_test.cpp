@@ -1,18 +1,74 @@
 // The ports of stages: routes, grants, b_transport; and what needs no grant.
+#include "models/memory/crossbar.h"
+
 #include <gtest/gtest.h>
 
+#include <array>
+#include <memory>
 #include <ostream>
 #include <stdexcept>
 #include <vector>
 
+#include "models/memory/ssram_bank.h"
 #include "models/testing/expected_report.h"
+#include "models/testing/monitoring_binder.h"
+#include "models/testing/test_host.h"
 #include "tests/support/scripted_ends.h"
-#include "tests/unit/memory/crossbar_bench.h"
+#include "tests/unit/memory/ports.h"
 
 namespace stereotlm::memory {
 namespace {
 
 using test::TestHost;
+
+// A crossbar with a host on each port and three banks of 16 words, one of each kind, every link under a
+// monitor. The test plays the clocked process: it calls arbitrate() for the cycles of a 40 MHz clock.
+class CrossbarBench : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kWords = 16;
+  static constexpr std::size_t kPipelined = 0;
+  static constexpr std::size_t kFlowThrough = 1;
+  static constexpr std::size_t kBurst = 2;
+  static constexpr std::uint64_t kPeriodPs = 25'000;
+
+  CrossbarBench() {
+    const CrossbarConfig config{kFixedPriority,
+                                {{kWords, BankKind::kZbtPipelined},
+                                 {kWords, BankKind::kZbtFlowThrough},
+                                 {kWords, BankKind::kSyncBurst, 2}}};
+    crossbar = std::make_unique<Crossbar>("crossbar", config);
+    for (std::size_t port = 0; port < kGroupCount; ++port)
+      binder.bind(hosts[port].socket, crossbar->ports[port], "port" + std::to_string(port) + "_to_crossbar");
+    for (std::size_t bank = 0; bank < config.banks.size(); ++bank) {
+      const std::string number = std::to_string(bank);
+      banks.push_back(std::make_unique<SsramBank>(("ssram" + number).c_str(), config.banks[bank]));
+      binder.bind(crossbar->banks[bank], banks.back()->port, "crossbar_to_bank" + number);
+    }
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  }
+
+  test::TestHost& at(Port port) { return hosts[port]; }
+  void route(Port port, std::size_t bank, bool write) {
+    crossbar->arbitration().route(port, bank, write);
+    crossbar->aim(port, bank, write);
+  }
+  // One cycle with these requests.
+  PortMask arbitrate(std::uint64_t cycle, PortMask requests = 0) {
+    return crossbar->arbitrate(cycle, requests);
+  }
+  static sc_core::sc_time cycles(std::uint64_t count) {
+    return sc_core::sc_time::from_value(count * kPeriodPs);
+  }
+  std::uint64_t accesses(std::size_t bank) const {
+    const SsramBank::Stats& stats = banks[bank]->stats();
+    return stats.reads + stats.writes + stats.errors;
+  }
+
+  test::MonitoringBinder binder;
+  sc_core::sc_vector<test::TestHost> hosts{"test_host", kGroupCount};
+  std::vector<std::unique_ptr<SsramBank>> banks;
+  std::unique_ptr<Crossbar> crossbar;
+};
 
 class CrossbarPorts : public CrossbarBench {};
 
@@ -133,6 +189,66 @@ TEST_F(CrossbarPorts, AreNotRoutedToABankOrFromAPortThatDoesNotExist) {
   EXPECT_EQ(crossbar->bank_of(port::kLeftPixel), kPipelined);
   EXPECT_EQ(arbitrate(0, kLeft), kLeft) << "its route has stayed";
   EXPECT_EQ(crossbar->direct(crossbar_address(3, 0), 4), nullptr);
+}
+
+// A bank that grants direct access to its words 0 and 1, or not at all, and revokes it; words 2 and 3 are
+// granted separately.
+class CrossbarRevoked : public testing::Test {
+ protected:
+  CrossbarRevoked() {
+    binder.bind(crossbar.banks[0], target.socket, "bank");
+    target.on_dmi = [this](tlm::tlm_generic_payload& access, tlm::tlm_dmi& dmi) {
+      const std::uint64_t start = access.get_address() / 8 * 8;
+      unsigned char* const granted = start == 0 ? memory : start == 8 ? memory_behind : nullptr;
+      if (granted == nullptr || (reads_only && access.is_write())) return false;
+      dmi.set_dmi_ptr(granted);
+      dmi.set_start_address(start);
+      dmi.set_end_address(start + 7);
+      reads_only ? dmi.allow_read() : dmi.allow_read_write();
+      return true;
+    };
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+  }
+  std::array<unsigned char, 8> first{};
+  std::array<unsigned char, 8> second{};
+  unsigned char* memory = first.data();
+  unsigned char* memory_behind = nullptr;
+  bool reads_only = false;
+  Crossbar crossbar{"crossbar", {kFixedPriority, {{16}}}};
+  test::ScriptedTarget target{"target"};
+  test::MonitoringBinder binder;
+};
+
+TEST_F(CrossbarRevoked, ReachesWordsThatAreGrantedSeparately) {
+  memory_behind = second.data();
+  EXPECT_EQ(crossbar.direct(0, 8), first.data());
+  EXPECT_EQ(crossbar.direct(12, 4), second.data() + 4);
+  EXPECT_EQ(crossbar.direct(8, 8), second.data());
+  EXPECT_EQ(crossbar.direct(4, 4), first.data() + 4);
+  EXPECT_EQ(crossbar.direct(4, 8), nullptr);
+}
+
+TEST_F(CrossbarRevoked, ReachesWhatTheBankGrantsAfterItHasRevokedAccess) {
+  ASSERT_EQ(crossbar.direct(0, 8), first.data());
+  memory = second.data();
+  target.socket->invalidate_direct_mem_ptr(0, 7);
+  EXPECT_EQ(crossbar.direct(0, 8), second.data());
+  memory = nullptr;
+  target.socket->invalidate_direct_mem_ptr(0, 7);
+  EXPECT_EQ(crossbar.direct(0, 8), nullptr);
+  memory = first.data();
+  EXPECT_EQ(crossbar.direct(0, 8), first.data());
+}
+
+TEST_F(CrossbarRevoked, IsNullForMoreThanTheBankGrants) {
+  EXPECT_EQ(crossbar.direct(0, 9), nullptr);
+  EXPECT_EQ(crossbar.direct(4, 8), nullptr);
+  EXPECT_EQ(crossbar.direct(8, 4), nullptr);
+}
+
+TEST_F(CrossbarRevoked, IsNullForWordsThatCanOnlyBeRead) {
+  reads_only = true;
+  EXPECT_EQ(crossbar.direct(0, 8), nullptr);
 }
 
 TEST(Crossbar, MayLeaveAPortUnbound) {

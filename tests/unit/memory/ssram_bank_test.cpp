@@ -18,6 +18,7 @@
 #include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "models/testing/test_host.h"
+#include "tests/support/refused_access.h"
 
 namespace stereotlm::memory {
 
@@ -57,16 +58,6 @@ class SsramBankTest : public testing::Test {
     host.socket->b_transport(payload, delay);
     return delay - sc_time(7, sc_core::SC_NS);
   }
-  // Sends the payload, which must be refused with this status, without effect and without cost.
-  void expect_refused(tlm::tlm_response_status status) {
-    const auto errors = bank->stats().errors;
-    EXPECT_EQ(transport(), sc_core::SC_ZERO_TIME);
-    EXPECT_EQ(payload.get_response_status(), status);
-    EXPECT_EQ(bank->stats().errors, errors + 1);
-    EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
-    EXPECT_EQ(host.debug_read(0, kWords), std::vector<std::uint32_t>(kWords));
-  }
-  void expect_violations(std::size_t count) { EXPECT_EQ(binder->take_violations().size(), count); }
 
   std::unique_ptr<test::MonitoringBinder> binder;
   TestHost host{"test_host"};
@@ -130,26 +121,34 @@ TEST_F(SsramBankTest, AnswersTheLastWordAndRefusesTheNextAddress) {
   EXPECT_EQ(bank->stats().errors, 4U);
 }
 
-TEST_F(SsramBankTest, RefusesAnAddressThatIsNotAlignedAndALengthThatIsNotWholeWords) {
+TEST_F(SsramBankTest, RefusesAccessesThatAreNoWholeWords) {
   test::ExpectedReport refusal("/stereotlm/refused_access");
-  build();
-  payload.set_command(tlm::TLM_WRITE_COMMAND);
-  data.fill(0xFF);
-  for (const unsigned address : {1U, 2U, 3U, 5U}) {
-    payload.set_address(address);
-    expect_refused(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    expect_violations(1);
-  }
+  test::ProtocolOptions streaming;
+  streaming.whole_words = false;
+  build({kWords}, streaming);
+  const auto read = tlm::TLM_READ_COMMAND;
+  const auto write = tlm::TLM_WRITE_COMMAND;
+  const test::RefusedAccess refused[] = {
+      {tlm::TLM_ADDRESS_ERROR_RESPONSE, write, 1},
+      {tlm::TLM_ADDRESS_ERROR_RESPONSE, write, 2},
+      {tlm::TLM_ADDRESS_ERROR_RESPONSE, read, 7},
+      {tlm::TLM_BURST_ERROR_RESPONSE, write, 4, 1, 8},
+      {tlm::TLM_BURST_ERROR_RESPONSE, read, 4, 5, 8},
+      {tlm::TLM_BURST_ERROR_RESPONSE, read, 4, 4, 3},
+      {tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, read, 4, 4, 4, 0},
+      {tlm::TLM_COMMAND_ERROR_RESPONSE, tlm::TLM_IGNORE_COMMAND, 4},
+  };
+  for (const test::RefusedAccess& access : refused) test::expect_refused(host.socket, access);
   EXPECT_EQ(refusal.text(),
             "bank: TLM_ADDRESS_ERROR_RESPONSE for a write of 4 bytes at address 0x1: the address must be a "
             "multiple of 4; later refusals are not reported");
-  payload.set_address(4);
-  payload.set_streaming_width(8);
-  for (const unsigned length : {1U, 3U, 5U}) {
-    payload.set_data_length(length);
-    expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
-    expect_violations(1);
-  }
+  payload.set_data_ptr(nullptr);
+  transport();
+  EXPECT_EQ(payload.get_response_status(), tlm::TLM_GENERIC_ERROR_RESPONSE);
+  EXPECT_EQ(bank->stats().errors, std::size(refused) + 1);
+  EXPECT_EQ(bank->stats().reads + bank->stats().writes, 0U);
+  EXPECT_EQ(host.debug_read(0, kWords), std::vector<std::uint32_t>(kWords));
+  EXPECT_EQ(binder->take_violations().size(), 2U);  // byte enables of no length, and no data
 }
 
 TEST_F(SsramBankTest, IsReportedWithoutSeparatorsInALocaleThatGroupsDigits) {
@@ -166,26 +165,6 @@ TEST_F(SsramBankTest, IsReportedWithoutSeparatorsInALocaleThatGroupsDigits) {
   EXPECT_THAT(refusal.text(), HasSubstr("a read of 4 bytes at address 0x7ffde068981a: "));
   EXPECT_THAT(binder->take_violations().at(0),
               HasSubstr("_monitor at 1234567 ps: b_transport: address = 0x7ffde068981a: "));
-}
-
-TEST_F(SsramBankTest, RefusesAStreamingWidthBelowTheWord) {
-  const test::ExpectedReport refusal("/stereotlm/refused_access");
-  test::ProtocolOptions streaming;
-  streaming.whole_words = false;
-  build({kWords}, streaming);
-  payload.set_streaming_width(3);
-  expect_refused(tlm::TLM_BURST_ERROR_RESPONSE);
-  payload.set_streaming_width(4);
-  transport();
-  EXPECT_EQ(payload.get_response_status(), tlm::TLM_OK_RESPONSE);
-}
-
-TEST_F(SsramBankTest, RefusesANullDataPointer) {
-  const test::ExpectedReport refusal("/stereotlm/refused_access");
-  build();
-  payload.set_data_ptr(nullptr);
-  expect_refused(tlm::TLM_GENERIC_ERROR_RESPONSE);
-  expect_violations(1);
 }
 
 // The report names the first rule that an access breaks.
@@ -214,18 +193,6 @@ TEST(AccessRules, NamesTheFirstRuleThatAnAccessBreaks) {
                        "the streaming width must be at least the length", "byte enables are not taken",
                        "the length of the byte enables must not be 0", "the address must be a multiple of 4",
                        "all bytes must be in the target", ""}));
-}
-
-TEST_F(SsramBankTest, RefusesByteEnablesOfLengthZeroAndACommandThatNeitherReadsNorWrites) {
-  const test::ExpectedReport refusal("/stereotlm/refused_access");
-  build();
-  payload.set_byte_enable_ptr(enables.data());
-  payload.set_byte_enable_length(0);
-  expect_refused(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-  expect_violations(1);
-  payload.set_byte_enable_ptr(nullptr);
-  payload.set_command(tlm::TLM_IGNORE_COMMAND);
-  expect_refused(tlm::TLM_COMMAND_ERROR_RESPONSE);
 }
 
 TEST_F(SsramBankTest, MovesOnlyTheBytesThatAreEnabledAndRepeatsShortByteEnables) {

@@ -38,23 +38,20 @@ struct Script {
   std::size_t words = 1;
 };
 
-// A master that runs its bursts one after the other. It requests the next burst when one has ended, or only
-// when the test calls request(). It writes word_at(address).
+// A master that runs its bursts one after the other, from the call of request() on. It writes
+// word_at(address).
 class TestMaster : public sc_core::sc_module, public PciMasterIf {
  public:
   struct Ended {
     BurstResult result;
     std::uint64_t address_ps = 0;
-    std::uint64_t granted_ps = 0;  // time of begin_burst()
     std::uint64_t end_ps = 0;
     std::vector<std::uint32_t> words;
   };
 
   PciMasterPort pci{"pci"};
   std::deque<Script> bursts;
-  bool at_once = true;
   std::vector<Ended> ended;
-  std::function<void()> on_end = [] {};
   std::function<void()> on_unused = [] {};  // a grant finds no burst
 
   explicit TestMaster(const sc_core::sc_module_name& name) : sc_module(name) {}
@@ -66,7 +63,6 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
       return {};
     }
     now_.address_ps = address_clock_ps;
-    now_.granted_ps = kernel_time::now_ps();
     const Script script = bursts.front();
     bursts.pop_front();
     words_ =
@@ -78,8 +74,7 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
     now_.end_ps = kernel_time::now_ps();
     now_.words = words_;
     ended.push_back(now_);
-    on_end();
-    if (at_once && !bursts.empty()) request();
+    if (!bursts.empty()) request();
   }
 
  private:
@@ -87,7 +82,7 @@ class TestMaster : public sc_core::sc_module, public PciMasterIf {
   std::vector<std::uint32_t> words_;
 };
 
-// A target that answers after the time that the test sets, and records accesses. Reads return
+// A target that records accesses. Reads return
 // word_at(address).
 class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>, public PciStopIf {
  public:
@@ -95,13 +90,10 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
     bool write = false;
     std::uint64_t address = 0;
     std::vector<std::uint32_t> words;
-    std::uint64_t at_ps = 0;  // its delay included
   };
 
   tlm::tlm_target_socket<32> socket{"socket"};
-  sc_core::sc_time read_waits;   // a read blocks for this time, after its delay
-  sc_core::sc_time read_delays;  // added to the delay of a read
-  sc_core::sc_time write_delays;
+  sc_core::sc_time write_delays;  // added to the delay of a write
   tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE;
   std::function<std::size_t(std::uint64_t, std::size_t)> writable = [](auto, auto words) { return words; };
   std::vector<Access> accesses;
@@ -112,7 +104,6 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
     Access& access = accesses.emplace_back();
     access.write = payload.is_write();
     access.address = payload.get_address();
-    access.at_ps = kernel_time::to_ps(sc_core::sc_time_stamp() + delay);
     access.words = words_from(access.address, payload.get_data_length() / 4);
     auto* const data = payload.get_data_ptr();
     if (access.write) {
@@ -120,11 +111,6 @@ class TestTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<>,
       delay += write_delays;
     } else {
       std::memcpy(data, access.words.data(), payload.get_data_length());
-      if (read_waits != sc_core::SC_ZERO_TIME) {
-        wait(delay + read_waits);
-        delay = sc_core::SC_ZERO_TIME;
-      }
-      delay += read_delays;
     }
     payload.set_response_status(response);
   }
@@ -167,22 +153,17 @@ class PciBusBench {
   }
   void bind_stop() { bus->stops[0].bind(*targets[0]); }
 
-  // Runs `body` in simulation at an absolute time, after a number of delta cycles.
-  void at(std::uint64_t time_ps, std::function<void()> body, int deltas = 0) {
-    sc_core::sc_spawn([time_ps, deltas, body = std::move(body)] {
+  // Runs `body` in simulation at an absolute time.
+  void at(std::uint64_t time_ps, std::function<void()> body) {
+    sc_core::sc_spawn([time_ps, body = std::move(body)] {
       if (time_ps > 0) sc_core::wait(kernel_time::to_time(time_ps));
-      for (int i = 0; i < deltas; ++i) sc_core::wait(sc_core::SC_ZERO_TIME);
       body();
     });
   }
-  void request_at(std::uint64_t time_ps, std::size_t master = 0, int deltas = 0) {
-    at(
-        time_ps, [this, master] { masters[master]->request(); }, deltas);
+  void request_at(std::uint64_t time_ps, std::size_t master = 0) {
+    at(time_ps, [this, master] { masters[master]->request(); });
   }
   std::uint64_t edge(std::uint64_t clock) const { return clock_.edge_ps(clock); }
-  void simulate_to_edge(std::uint64_t clock) {
-    sc_core::sc_start(kernel_time::to_time(edge(clock) - kernel_time::now_ps()));
-  }
 
   static constexpr std::uint32_t kBase = 0x1'0000;
   static constexpr std::uint32_t kBytes = 0x1'0000;

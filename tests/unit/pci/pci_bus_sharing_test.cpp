@@ -1,4 +1,4 @@
-// What the random boards of pci_bus_random_test.cpp do not reach.
+// What the random computers do not reach.
 #include <gtest/gtest.h>
 
 #include "tests/unit/pci/pci_bus_bench.h"

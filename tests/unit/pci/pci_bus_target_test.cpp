@@ -1,5 +1,4 @@
-// The effect of targets and addresses on a burst. The random boards of pci_bus_random_test.cpp have several
-// masters, and their times.
+// The effect of targets and addresses on a burst. The random computers have several masters, and their times.
 #include <gtest/gtest.h>
 
 #include "models/testing/expected_report.h"

@@ -1,4 +1,4 @@
-// The event loop of the computer, without the kernel: where it stops, and the order of events of one time.
+// The event loop of the computer, without the kernel: the order of events of one time.
 // Random computers compare its figures with the plain event loop.
 #include "platform/loop/computer_loop.h"
 
@@ -109,9 +109,9 @@ class LoopProcessor : public pci::PciMasterIf {
     return done.words.front();
   }
   // Arms both captures.
-  void arm(std::uint32_t left_bank = 1, std::uint32_t right_bank = 3) {
+  void arm() {
     for (const std::uint32_t side : {0U, 1U}) {
-      write(testing::page_register(1 + side), (side == 0 ? left_bank : right_bank) << 26U);
+      write(testing::page_register(1 + side), (side == 0 ? 1U : 3U) << 26U);
       write(kCaptures[side] + capture_map::kBufferAddress,
             static_cast<std::uint32_t>(testing::aperture(1 + side)));
       write(kCaptures[side] + capture_map::kControl, capture_map::kControlArm);
@@ -171,24 +171,6 @@ TEST_F(ComputerLoopTest, LetsTheProcessorTakePartInTheDecisionsOfTheTimeOfAnInte
   EXPECT_EQ(granted_ps.back(), interrupt_ps);
 }
 
-// PCI ends burst A in clock e. The only word of B is posted at e + 7, that of C at e + 14. The local bus ends
-// A at e + 3 + words. With 11 words, that is when C's word comes: the bridge sends B and C in two bursts.
-// With 12 words it sends both in one burst.
-TEST_F(ComputerLoopTest, EndsABurstOfTheLocalBusBeforeWordsArePostedAtThatTime) {
-  for (const std::size_t words : {11U, 12U}) {
-    const std::uint64_t before = computer_counters().local_bus.bursts;
-    std::uint64_t address = kDevices.bridge_slave;
-    for (const std::size_t count : {words, std::size_t{1}, std::size_t{1}}) {
-      bursts.push_back({true, address, Words(count, 7)});
-      address += 4 * count;
-    }
-    request(loop().now_ps());
-    loop().run(kFar);
-    loop().run(loop().now_ps() + 100 * kEdgePs);
-    EXPECT_EQ(computer_counters().local_bus.bursts - before, words == 11 ? 3U : 2U) << words;
-  }
-}
-
 // At this camera rate the last pixel of a frame arrives with a clock of the bus. In the last line the load
 // keeps the bus until a word finds the one-word FIFO full: the rest is dropped, and the capture ends with the
 // last pixel. A write at this time that clears `done` comes first, and clears nothing; 1 ns later it does.
@@ -225,36 +207,6 @@ TEST_P(ComputerLoopPixels, ArriveAfterTheWritesOfTheirTime) {
 INSTANTIATE_TEST_SUITE_P(ComputerLoop, ComputerLoopPixels, ::testing::Bool(), [](const auto& later) {
   return later.param ? "and_before_later_ones" : "with_them";
 });
-
-// A frame begins at this very time.
-TEST_F(ComputerLoopTest, TakesAFrameWhoseCapturesAreArmedAsItBegins) {
-  for (const std::uint64_t late_ps : {std::uint64_t{0}, kEdgePs}) {
-    SCOPED_TRACE(late_ps);
-    LoopProcessor other;
-    ComputerLoop& computer = other.loop();
-    other.write(kDevices.left_capture + capture_map::kBufferAddress, 0);
-    other.write(kDevices.right_capture + capture_map::kBufferAddress, 0);
-    other.write(kDevices.right_capture + capture_map::kControl, capture_map::kControlArm);
-    const std::uint64_t frame_ps = 1'000'000'000;
-    other.bursts.push_back({true, kDevices.left_capture + capture_map::kControl, {capture_map::kControlArm}});
-    other.request(frame_ps + late_ps - 6 * kEdgePs);
-    computer.run(kFar);
-    EXPECT_EQ(computer.now_ps(), frame_ps + late_ps);
-    computer.run(frame_ps + 2 * kEdgePs);
-    EXPECT_EQ(other.computer_counters().cameras[0].capture.started_frames, late_ps == 0 ? 1U : 0U);
-  }
-}
-
-TEST_F(ComputerLoopTest, RefusesBurstsOfSeveralWordsToRegisters) {
-  for (const bool write : {true, false}) {
-    for (const std::uint64_t address :
-         {kDevices.bridge_registers, kDevices.left_capture + capture_map::kStatus})
-      EXPECT_EQ(access(write, address, Words(2)), pci::BurstEnd::kTargetError);
-  }
-  EXPECT_EQ(computer_counters().bridge.errors, 2U);
-  EXPECT_EQ(computer_counters().cameras[0].capture.refused_accesses, 2U);
-  EXPECT_EQ(access(true, kDevices.host_memory, Words(2)), pci::BurstEnd::kComplete);
-}
 
 TEST_F(ComputerLoopTest, RefusesABoardWithProblems) {
   config.allocation.left_lut = "bank9";

@@ -310,16 +310,6 @@ TEST(BoardKeysTable, SaysWhichKeysMayBeMissing) {
   }
 }
 
-TEST(BoardKeysTable, GivesTheRangesThatMessagesGive) {
-  for (const KeyCase& key : key_cases()) {
-    for (const Key& info : keys()) {
-      if (info.path == key.path) {
-        EXPECT_EQ(info.rule.text, key.rule) << key.path;
-      }
-    }
-  }
-}
-
 TEST(BankText, TellsABankFromAPartOfTheModelOfTheSameName) {
   for (const char* name : {"bank0", "bank17"}) EXPECT_EQ(bank_text(name), name);
   for (const std::string name : {"matcher", "pci", "bank", "bank_pci", "bank0b", "Bank0", "frame0"})
