@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <iterator>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -12,7 +11,6 @@
 #include <vector>
 
 #include "sw/files/whole_file.h"
-#include "tests/support/file_size_limit.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::stats {
@@ -97,13 +95,6 @@ TEST(RowComparison, KeepsRowsOfWhichOnlyTheStallsDiffer) {
   EXPECT_EQ(text_of(rows.ranges(10), 1), "1..2: 0, 0..0, 8; 3..3: 0, 0..0, 5; ");
 }
 
-TEST(RowComparison, JoinsRowsOfEqualCyclesWhereTheirStallsDifferTooOften) {
-  RowComparison rows;
-  rows.add(stalled({{0, 0}, {0, 0}, {0, 0}}), stalled({{1, 0}, {2, 0}, {3, 0}}));
-  EXPECT_EQ(text_of(rows.ranges(3), 0), "0..0: 0, 0..0, 1; 1..1: 0, 0..0, 2; 2..2: 0, 0..0, 3; ");
-  EXPECT_EQ(text_of(rows.ranges(2), 0), "0..2: 0, 0..0, 6; ");
-}
-
 TEST(RowComparison, KeepsRangesWhoseDifferencesCancel) {
   RowComparison rows;
   rows.add(profile({10, 12, 10, 10, 10, 10}), profile({12, 10, 10, 10, 13, 10}));
@@ -151,10 +142,6 @@ constexpr const char* kHead =
     "a_right_pixel_stall_cycles,a_result_stall_cycles,b_left_lut_stall_cycles,b_right_lut_stall_cycles,"
     "b_left_pixel_stall_cycles,b_right_pixel_stall_cycles,b_result_stall_cycles\n";
 
-std::ptrdiff_t files_in(const test::ScratchFolder& folder) {
-  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
-}
-
 TEST(RowsCsv, HasALineForEachFrameAndRow) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
@@ -169,7 +156,6 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
                                               "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
                                               "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
                                               "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
-  EXPECT_EQ(files_in(folder), 1);
 }
 
 // Two runs may have different numbers of lanes.
@@ -180,26 +166,6 @@ TEST(RowsCsv, AddsTheStallsOfTheLanesOfAPortGroup) {
   csv.add({{10, {1, 2, 3, 4, 5}}}, {{11, {1, 2, 10, 20, 100, 200, 1000, 2000, 5}}});
   csv.commit();
   EXPECT_EQ(files::read_whole_file(path), std::string(kHead) + "0,0,10,11,1,2,3,4,5,3,30,300,3000,5\n");
-}
-
-TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
-  const test::ScratchFolder folder;
-  const auto path = folder.path() / "rows.csv";
-  const std::string refusal = "'" + path.string() + "': cannot be written: ";
-  {
-    const std::string full = refusal + "File too large";
-    const test::FileSizeLimit limit(1000);
-    RowsCsv csv(path);
-    csv.add(profile(std::vector<std::uint64_t>(100)), profile(std::vector<std::uint64_t>(100)));
-    EXPECT_EQ(test::message_of([&] { csv.commit(); }), full);
-  }
-  EXPECT_EQ(files_in(folder), 0);
-  {
-    RowsCsv csv(path);
-    std::filesystem::create_directory(path);
-    EXPECT_EQ(test::message_of([&] { csv.commit(); }), "'" + path.string() + "': is no file");
-  }
-  EXPECT_EQ(files_in(folder), 1);
 }
 
 }  // namespace
