@@ -1,5 +1,6 @@
-"""What programs of users read keeps its form: the keys and values of stats.json, the columns and rows of the
-database of a sweep, and the table of keys equal the files in the folder `frozen`.
+"""What users and their programs read keeps its form: the keys and values of stats.json, the columns and rows
+of the database of a sweep, the table of keys, and what run, check, boards and bounds print equal the files in
+the folder `frozen`.
 
 With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a change of the contract.
 """
@@ -7,6 +8,7 @@ With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a chang
 import json
 import os
 import pathlib
+import shlex
 import sqlite3
 import tempfile
 import unittest
@@ -54,6 +56,14 @@ vary:
 """,
 }
 
+BOUNDS = [
+    ["fpl2003"],
+    ["fpl2003", *sets("allocation.left_lut=bank0", "allocation.disparity=[bank5, bank5, bank1]")],
+    ["fpl2003", *sets("matcher.fetch=line_buffer", "matcher.disparities=254")],
+    ["eight-banks-four-lanes"],
+    ["sdram"],
+]
+
 
 def as_lines(stats):
     """A line for each figure, its path and its value."""
@@ -93,6 +103,14 @@ class Frozen(ProgramTest):
             return
         self.assertMultiLineEqual(path.read_text(), text)
 
+    def expect_printed(self, name, *commands):
+        text = ""
+        for command in commands:
+            done = run(*command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            text += f"$ stereotlm {shlex.join(command)}\n{done.stdout}"
+        self.expect(name, text)
+
     def test_the_keys_and_values_of_stats_json(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
@@ -108,6 +126,7 @@ class Frozen(ProgramTest):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 stats = json.loads((folder / name / "stats.json").read_text())
                 self.expect(f"stats_{name}", as_lines(stats))
+                self.expect(f"printed_{name}", done.stdout)
 
     def test_the_columns_and_rows_of_a_database(self):
         for name, plan in PLANS.items():
@@ -120,6 +139,11 @@ class Frozen(ProgramTest):
                 text = "".join(table_of(database, table) for table in ("points", "keys", "blame"))
                 database.close()
                 self.expect(f"database_{name}", text)
+
+    def test_what_is_printed_of_boards(self):
+        names = [board["name"] for board in json.loads(run("boards", "--json").stdout)["boards"]]
+        self.expect_printed("boards", ["boards"], *(["check", name] for name in names))
+        self.expect_printed("bounds", *(["bounds", *board, "--area"] for board in BOUNDS))
 
     def test_the_table_of_keys(self):
         self.expect("keys", run("keys").stdout + run("keys", "--json").stdout)

@@ -143,17 +143,6 @@ class Json(ProgramTest):
         self.assertEqual(self.document("boards", "--show", "two-banks")["boards"],
                          [board for board in boards if board["name"] == "two-banks"])
 
-    def test_keys_are_those_of_a_board_file(self):
-        keys = {row["key"]: row for row in self.document("keys")["keys"]}
-        self.assertEqual(keys["matcher.window"],
-                         {"key": "matcher.window", "unit": "pixels", "range": "3..31, odd",
-                                                  "meaning": "rows and columns of the matching window"})
-        self.assertNotIn("unit", keys["cameras.trigger"])
-        board = self.succeeds(run("boards", "--show", "fpl2003"))
-        for section in ("cameras", "bridge"):
-            for key in re.search(rf"(?m)^{section}: {{(.*)}}", board)[1].split(","):
-                self.assertIn(f"{section}.{key.split(':')[0].strip()}", keys)
-
     def test_check_lists_the_problems_with_place_key_value_and_rule(self):
         text = ("extends: fpl2003\nname: a\nmatcher:\n  window: 6\n  cost: {census: 4}\nfoo: 1\nimage: "
                 "{width: [1, 2]}\n")
