@@ -1,6 +1,6 @@
 """What users and their programs read keeps its form: the keys and values of stats.json, the columns and rows
-of the database of a sweep, the table of keys, and what run, check, boards and bounds print equal the files in
-the folder `frozen`.
+of the database of a sweep, the table of keys, and what the commands print equal the files in the folder
+`frozen`.
 
 With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a change of the contract.
 """
@@ -64,6 +64,39 @@ BOUNDS = [
     ["sdram"],
 ]
 
+SMALL = ["fpl2003", *sets("image.width=32", "image.height=24")]
+NARROW = ["fpl2003", *sets("image.width=16", "image.height=24")]
+SHARED = sets("allocation.left_lut=bank0")
+CAMERAS = sets("cameras.frame_rate_hz=1000", "fpga.clock_mhz=3.745")
+CAPTURES = [*CAMERAS, *sets("allocation.left_image=[bank0, bank0]", "allocation.disparity=[bank0, bank0]")]
+SCENE = ["--synthetic", "1"]
+EXPLAINED = [
+    [*SMALL, *PRELOADED, *SHARED],
+    [*SMALL, *PRELOADED, *sets("matcher.rows=4", "matcher.disparities=4", "fpga.result_fifo_words=4")],
+    [*SMALL, *CAMERAS],
+]
+CONFLICTS = [
+    [*SMALL, *PRELOADED, *SCENE],
+    [*SMALL, *PRELOADED, *SCENE, *SHARED, "--frames", "3"],
+    [*SMALL, *CAPTURES, "--timing-only", "--frames", "3"],
+]
+LOSING = ["fpl2003", "--timing-only", *sets("image.width=64", "image.height=24", "matcher.window=3",
+                                            "cameras.frame_rate_hz=1000", "fpga.clock_mhz=8",
+                                            "pci.clock_mhz=1", "capture.fifo_words=16",
+                                            "capture.fifo_trigger_words=4")]
+# Two runs that differ: in a bank of the paper's board, in frames and rows, in what cameras deliver, in size,
+# in their source, in pixels that are lost.
+TIMING = ["fpl2003", *PRELOADED, "--timing-only", *sets("matcher.filter=none")]
+DIFFERENT = [
+    (TIMING, [*TIMING, *SHARED]),
+    ([*SMALL, *PRELOADED, *SCENE, "--frames", "3"], [*SMALL, *PRELOADED, *SCENE, *SHARED, "--frames", "4"]),
+    ([*SMALL, *CAMERAS, *SCENE, "--frames", "8", "--save-frames"],
+     [*SMALL, *CAPTURES, *SCENE, "--frames", "8", "--save-frames"]),
+    ([*SMALL, *PRELOADED, *SCENE], [*NARROW, *PRELOADED, "--timing-only"]),
+    ([*SMALL, *CAMERAS, *SCENE], [*SMALL, *PRELOADED, *SCENE]),
+    ([*LOSING, "--frames", "14"], [*LOSING, "--frames", "20"]),
+]
+
 
 def as_lines(stats):
     """A line for each figure, its path and its value."""
@@ -106,7 +139,7 @@ class Frozen(ProgramTest):
     def expect_printed(self, name, *commands):
         text = ""
         for command in commands:
-            done = run(*command)
+            done = run(*command, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             text += f"$ stereotlm {shlex.join(command)}\n{done.stdout}"
         self.expect(name, text)
@@ -144,6 +177,15 @@ class Frozen(ProgramTest):
         names = [board["name"] for board in json.loads(run("boards", "--json").stdout)["boards"]]
         self.expect_printed("boards", ["boards"], *(["check", name] for name in names))
         self.expect_printed("bounds", *(["bounds", *board, "--area"] for board in BOUNDS))
+
+    def test_what_is_printed_of_simulations(self):
+        self.expect_printed("explain", *(["explain", *board] for board in EXPLAINED))
+        self.expect_printed("conflicts", *(["conflicts", *board] for board in CONFLICTS))
+        for number, pair in enumerate(DIFFERENT):
+            for name, command in zip("ab", pair):
+                self.succeeds(run("run", *command, "--out", f"{name}{number}", cwd=self.folder))
+        pairs = ((f"a{number}", f"b{number}") for number in range(len(DIFFERENT)))
+        self.expect_printed("diff", *(["diff", *pair] for pair in pairs))
 
     def test_the_table_of_keys(self):
         self.expect("keys", run("keys").stdout + run("keys", "--json").stdout)

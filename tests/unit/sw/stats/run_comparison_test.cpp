@@ -7,7 +7,6 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "sw/files/whole_file.h"
@@ -31,29 +30,14 @@ RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   return rows;
 }
 
-// "first..last: cycles, least..most, stalls of the port; " of each range
-std::string text_of(const std::vector<RowComparison::Range>& ranges, std::size_t port = 2) {
+// "first..last: cycles, least..most, stalls of the left pixel port; " of each range
+std::string text_of(const std::vector<RowComparison::Range>& ranges) {
   std::string text;
   for (const RowComparison::Range& range : ranges) {
     text += fmt::format("{}..{}: {}, {}..{}, {}; ", range.first_row, range.last_row, range.cycles,
-                        range.least, range.most, range.stalls[port]);
+                        range.least, range.most, range.stalls[2]);
   }
   return text;
-}
-
-TEST(RowComparison, NamesTheFirstRowThatEndsInAnotherCycle) {
-  RowComparison rows;
-  rows.add(profile({10, 20, 30}), profile({10, 20, 30}));
-  EXPECT_EQ(rows.frames(), 1U);
-  EXPECT_FALSE(rows.parting());
-  EXPECT_TRUE(rows.ranges(10).empty());
-  rows.add(profile({10, 20, 30}), profile({10, 21, 29}));
-  rows.add(profile({10, 20, 30}), profile({9, 20, 30}));
-  ASSERT_TRUE(rows.parting());
-  EXPECT_EQ(rows.parting()->frame, 1U);
-  EXPECT_EQ(rows.parting()->row, 1U);
-  EXPECT_EQ(rows.parting()->cycles_a, 30U);
-  EXPECT_EQ(rows.parting()->cycles_b, 31U);
 }
 
 TEST(RowComparison, JoinsNeighbouringRowsThatCostTheSame) {
@@ -68,31 +52,6 @@ TEST(RowComparison, JoinsRowsToBandsWhereTheRangesAreTooMany) {
   EXPECT_EQ(text_of(rows.ranges(4)),
             "0..0: 10, 10..10, 1; 4..4: 30, 30..30, 3; 5..5: 10, 10..10, 1; 6..6: -10, -10..-10, -1; ");
   EXPECT_EQ(text_of(rows.ranges(3)), "0..1: 10, 0..10, 1; 4..6: 30, -10..30, 3; ");
-}
-
-// Rows of 10 cycles with the given stalls of the left and of the right table port.
-RowProfile stalled(const std::vector<std::pair<std::uint64_t, std::uint64_t>>& stalls) {
-  RowProfile rows;
-  RowEnd end = {0, std::vector<std::uint64_t>(fpga::kCoreGroupCount)};
-  for (const auto& [left, right] : stalls) {
-    end.cycles += 10;
-    end.stalls[0] += left;
-    end.stalls[1] += right;
-    rows.push_back(end);
-  }
-  return rows;
-}
-
-TEST(RowComparison, KeepsRowsOfWhichOnlyTheStallsDiffer) {
-  RowComparison rows;
-  rows.add(stalled({{0, 0}, {4, 0}, {4, 0}, {4, 0}, {1, 1}}),
-           stalled({{0, 0}, {0, 4}, {0, 4}, {0, 5}, {1, 1}}));
-  EXPECT_FALSE(rows.parting());
-  ASSERT_TRUE(rows.other_stalls());
-  EXPECT_EQ(rows.other_stalls()->frame, 0U);
-  EXPECT_EQ(rows.other_stalls()->row, 1U);
-  EXPECT_EQ(text_of(rows.ranges(10), 0), "1..2: 0, 0..0, -8; 3..3: 0, 0..0, -4; ");
-  EXPECT_EQ(text_of(rows.ranges(10), 1), "1..2: 0, 0..0, 8; 3..3: 0, 0..0, 5; ");
 }
 
 TEST(RowComparison, KeepsRangesWhoseDifferencesCancel) {
