@@ -160,15 +160,6 @@ class Run(CalibrateTest):
         points = sum(1 for row in rows for disparity in row if disparity not in no_depth)
         self.assertIn(b"element vertex %d\n" % points, (self.out / "depth.ply").read_bytes())
 
-    def test_gives_the_same_disparities_through_the_whole_computer(self):
-        small = sets("matcher.fetch=line_buffer", "matcher.window=3")
-        self.succeeds(run(*self.scene(*small, "--out", self.out)))
-        whole = self.folder / "whole"
-        command = [word for word in self.scene(*small, "--out", whole) if word not in PRELOADED]
-        self.succeeds(run(*command))
-        for name in ("disparity.png", "depth.png", "depth_color.png", "depth.ply"):
-            self.assertEqual((whole / name).read_bytes(), (self.out / name).read_bytes())
-
     def test_tells_check_and_bounds_which_entries_have_no_source(self):
         self.succeeds(self.calibrate("--disparity-offset", "100"))
         self.succeeds(run("check", "fpl2003", "--calibration", self.new))

@@ -8,14 +8,11 @@ import os
 import pathlib
 import resource
 import shutil
-import signal
 import sys
-import time
 
 import program
 from pictures import pgm
-from program import (HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets,
-                     wait_until)
+from program import HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, of_plain_user, run, sets
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "sw/cli"))
 import completion  # noqa: E402
@@ -24,11 +21,6 @@ COMMANDS = (
     "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report "
     "worker"
 ).split()
-OPTIONS_OF_RUN = (
-    "BOARD,--left,--right,--sequence,--video F [F2],--video-layout,--synthetic,--frames,--truth,"
-    "--truth-scale,--set,--out,--save-frames,--record,--no-record,--fidelity fast|cycle,--timing-only,"
-    "--verify,--trace FORMAT:FILE,--trace-window,default 1"
-)
 SMALL_KEYS = "{image.width: 32, image.height: 24}"
 NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")
 
@@ -46,11 +38,6 @@ class Help(ProgramTest):
             text = self.succeeds(run(option))
             for part in [*COMMANDS, "Exit status: 0"]:
                 self.assertIn(part, text)
-
-    def test_run_names_its_options_and_defaults(self):
-        text = self.succeeds(run("run", "--help"))
-        for part in OPTIONS_OF_RUN.split(","):
-            self.assertIn(part, text)
 
     def test_each_command_says_how_to_use_it_in_104_columns(self):
         for command in ([], *([command] for command in COMMANDS)):
@@ -456,31 +443,6 @@ class Outputs(ProgramTest):
             path.unlink()
         for _ in range(2):
             self.succeeds(run(*own["conflicts"], self.out))
-
-    @program.slow
-    def test_an_interrupted_command_leaves_nothing_hidden(self):
-        own = {**{ending: self.command(ending, f"own{ending}") for ending in self.writers},
-               "merge": ["merge", "merged.db", self.store, self.folder / "search.db"],
-               "page": ["report", self.a, "--out", "page.html"],
-               "page of a database": ["report", self.store, "--out", "page.html"],
-               "page of two": ["report", self.a, self.b, "--out", "page.html"],
-               "traces": ["run", "fpl2003", *SMALL, *PRELOADED, "--timing-only", "--frames", "2000",
-                          "--trace",
-                          "sqlite:own.db", "--trace", "perfetto:own.perfetto"]}
-        self.succeeds(run(*own[".yaml"], cwd=self.folder))
-        for name, command in own.items():
-            begin = time.monotonic()
-            run(*command, cwd=self.folder)
-            seconds = time.monotonic() - begin
-            for part in range(1, 7):
-                process = self.start(*command, cwd=self.folder)
-                time.sleep(seconds * part / 6)
-                process.send_signal(signal.SIGINT)
-                process.communicate()
-                with self.subTest(name=name, part=part):
-                    self.assertIn(process.returncode, (0, 130, -signal.SIGINT))  # the last before it begins
-                    # Of a command that the signal kills, the remover removes them.
-                    wait_until(lambda: not list(self.folder.rglob(".*")))
 
 
 if __name__ == "__main__":
