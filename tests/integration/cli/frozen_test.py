@@ -1,6 +1,6 @@
-"""What users and their programs read keeps its form: the keys and values of stats.json, the columns and rows
-of the database of a sweep, the table of keys, and what the commands print equal the files in the folder
-`frozen`.
+"""What users and their programs read keeps its form: the keys and values of stats.json, the tables of a run,
+the columns and rows of the database of a sweep, the table of keys, and what the commands print. All of it
+equals the files in the folder `frozen`.
 
 With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a change of the contract.
 """
@@ -10,9 +10,9 @@ import os
 import pathlib
 import shlex
 import sqlite3
-import tempfile
 import unittest
 
+import jsonschema
 from pictures import noise, pgm
 from program import PRELOADED, ProgramTest, run, sets
 
@@ -139,36 +139,33 @@ class Frozen(ProgramTest):
     def expect_printed(self, name, *commands):
         text = ""
         for command in commands:
-            done = run(*command, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            text += f"$ stereotlm {shlex.join(command)}\n{done.stdout}"
+            said = self.succeeds(run(*command, cwd=self.folder))
+            if "--json" in command:
+                jsonschema.validate(json.loads(said), json.loads(run("keys", "--schema", command[0]).stdout))
+            text += f"$ stereotlm {shlex.join(command)}\n{said}"
         self.expect(name, text)
 
     def test_the_keys_and_values_of_stats_json(self):
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            for name, arguments in RUNS.items():
-                pictures = []
-                if "--timing-only" not in arguments:
-                    size = [int(word.split("=")[1]) for word in arguments
-                            if word.startswith(("image.width", "image.height"))]
-                    for side, seed in (("left", 1), ("right", 2)):
-                        (folder / f"{name}_{side}.pgm").write_bytes(pgm(*size, noise(*size, seed)))
-                        pictures += [f"--{side}", folder / f"{name}_{side}.pgm"]
-                done = run("run", *arguments, *pictures, "--out", folder / name)
-                self.assertEqual(done.returncode, 0, done.stderr)
-                stats = json.loads((folder / name / "stats.json").read_text())
-                self.expect(f"stats_{name}", as_lines(stats))
-                self.expect(f"printed_{name}", done.stdout)
+        for name, arguments in RUNS.items():
+            pictures = []
+            if "--timing-only" not in arguments:
+                size = [int(word.split("=")[1]) for word in arguments
+                        if word.startswith(("image.width", "image.height"))]
+                for side, seed in (("left", 1), ("right", 2)):
+                    path = self.file(f"{name}_{side}.pgm", pgm(*size, noise(*size, seed)))
+                    pictures += [f"--{side}", path]
+            said = self.succeeds(run("run", *arguments, *pictures, "--out", self.folder / name))
+            self.expect(f"stats_{name}", as_lines(self.stats(self.folder / name)))
+            self.expect(f"printed_{name}", said)
+        for table in ("timeline", "latency", "rows"):
+            self.expect(table, (self.folder / "computer" / f"{table}.csv").read_text())
 
     def test_the_columns_and_rows_of_a_database(self):
         for name, plan in PLANS.items():
-            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
-                folder = pathlib.Path(folder)
-                (folder / "plan.yaml").write_text(plan)
-                done = run("sweep", folder / "plan.yaml", "--out", folder / "points.db")
-                self.assertEqual(done.returncode, 0, done.stderr)
-                database = sqlite3.connect(folder / "points.db")
+            with self.subTest(name):
+                store = self.folder / f"{name}.db"
+                self.succeeds(run("sweep", self.file("plan.yaml", plan), "--out", store))
+                database = sqlite3.connect(store)
                 text = "".join(table_of(database, table) for table in ("points", "keys", "blame"))
                 database.close()
                 self.expect(f"database_{name}", text)
@@ -186,6 +183,10 @@ class Frozen(ProgramTest):
                 self.succeeds(run("run", *command, "--out", f"{name}{number}", cwd=self.folder))
         pairs = ((f"a{number}", f"b{number}") for number in range(len(DIFFERENT)))
         self.expect_printed("diff", *(["diff", *pair] for pair in pairs))
+        shared = [*SMALL, *SHARED]
+        self.expect_printed("documents", ["check", *shared, "--json"], ["bounds", *shared, "--json"],
+                            ["conflicts", *shared, *PRELOADED, "--timing-only", "--json"],
+                            ["diff", "a1", "b1", "--json"], ["diff", "a1", "a1", "--json"])
 
     def test_the_table_of_keys(self):
         self.expect("keys", run("keys").stdout + run("keys", "--json").stdout)
