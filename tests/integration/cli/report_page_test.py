@@ -7,7 +7,6 @@ import html
 import io
 import json
 import math
-import random
 import re
 import shlex
 import sqlite3
@@ -549,20 +548,6 @@ class Tools(PageTest):
         self.browser.open(page_of(shared_run("alone", *PRELOADED)))
         self.assertEqual(self.browser.all("#rows .command"), [])
 
-    def test_the_time_line_is_zoomed_by_brush_and_buttons(self):
-        self.browser.open(page_of(computer()))
-        axis = lambda: self.browser.text("#time .axis")
-        seen = [axis()]
-        self.browser.drag("#time .brush-x", (0.3, 0.98), (0.5, 0.98))
-        seen.append(axis())
-        self.browser.button("time", "Later")
-        seen.append(axis())
-        self.assertEqual(len(set(seen)), 3)
-        self.browser.button("time", "All")
-        events = (computer() / "timeline.csv").read_text().splitlines()[1:]
-        instant = sum(line.startswith("wait") and line.split(",")[4] == line.split(",")[5] for line in events)
-        self.assertEqual(len(self.browser.all("#time .mark")), len(events) - instant)
-
     def test_the_time_line_shows_where_the_page_has_no_events(self):
         def change(data):
             recording = data["run"]["recording"]
@@ -685,18 +670,6 @@ class Answers(PageTest):
                           (35, "Over all columns.")):
             self.opened(core(), change)
             self.assertIn(text, self.answer("Where in the picture?"))
-
-    def test_dropped_frames_have_their_reasons_and_no_judgement(self):
-        def change(run):
-            camera = run["stats"]["cameras"][0]
-            camera.update(frames=26, dropped_not_armed=11, dropped_busy=1, dropped_frames=12)
-            run["stats"]["frames_per_second"].update(steady=400, steady_uncertainty=2)
-
-        dropped = ("12 of 26 frames of the left camera are dropped: 11 because its capture board is not "
-                   "armed as they begin, 1 because the capture before them still runs. The cameras deliver "
-                   "1000.0 frames/s; the run makes 400.0 ± 2.00 frames/s, steady. A capture board is armed")
-        self.opened(computer(), change)
-        self.assertIn(dropped, self.answer("What limits?"))
 
     def test_a_rate_above_its_bound_is_at_it_within_its_uncertainty(self):
         def change(run):
@@ -903,24 +876,6 @@ class Names(PageTest):
         self.browser.open(page)
         self.browser.run("document.querySelector('#points button[data-row]').click()")
         self.is_harmless(NASTY, NASTY_FOLDER)
-
-
-class Large(PageTest):
-    def test_12000_points_are_shown_and_brushed(self):
-        points = 12000
-
-        def change(data):
-            drawn = random.Random(1)
-            column = lambda name, draw: {"name": name, "list": [draw() for _ in range(points)]}
-            columns = [column(f"figure_{i}", drawn.random) for i in range(8)]
-            columns.append(column("matcher.window", lambda: drawn.choice([3, 5, 7])))
-            data["database"].update(points=points, columns=columns, keys=["matcher.window"],
-                                    boards={"lines": ["name: a\n"], "points": [[0]] * points})
-
-        self.opened(page_of(database()), change)
-        self.browser.drag("#scatter .brush-xy", (0.1, 0.1), (0.9, 0.9))
-        self.assertGreater(self.selected_points(), points // 4)
-        self.assertLess(self.selected_points(), points)
 
 
 if __name__ == "__main__":

@@ -137,20 +137,6 @@ class Refusals(TraceTest):
             ([*base, "--trace", f"perfetto:{self.folder}"], f"'{self.folder}': is no file"),
         ])
 
-    def test_keep_files_that_are_no_traces(self):
-        text = self.file("notes.md", "what I found")
-        for form in ("perfetto", "sqlite", "vcd"):
-            process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", f"{form}:{text}",
-                          "--trace-window",
-                          "frame=0")
-            self.refused_in_one_line(process, "notes.md': exists, and is not known as a ",
-                                     "of stereotlm, which alone")
-        self.assertEqual(text.read_text(), "what I found")
-        self.traced(*trace("sqlite"))
-        self.refused_in_one_line(run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace",
-                                     "perfetto:run.sqlite",
-                                     cwd=self.folder), "is not known as a Perfetto trace of stereotlm")
-
     def test_keep_inputs_and_results(self):
         self.refused_in_one_line(self.run_small("--trace", f"perfetto:{self.left}"),
                                  f"--trace '{self.left}': exists, and is not known as a Perfetto trace")
