@@ -196,7 +196,7 @@ class Run(CalibrateTest):
 
 
 class RefusedCalibrations(CalibrateTest):
-    """tests/unit/calib/calibration_yaml_test.cpp has every way in which its text is wrong."""
+    """tests/unit/calib/calibration_test.cpp has every way in which its text is wrong."""
 
     def refused_with(self, rig, *texts, board=()):
         process = run("check", "fpl2003", *board, "--calibration", rig)

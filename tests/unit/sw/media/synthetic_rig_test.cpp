@@ -50,6 +50,20 @@ TEST(SyntheticRig, RefusesAGridThatFindsNoPlace) {
   EXPECT_THROW(rig.grid_corners(kGrid, 0), std::domain_error);
 }
 
+TEST(SyntheticRig, HasNoMatchForHiddenPoints) {
+  const SyntheticRig rig(3, 160, 120);
+  int hidden = 0;
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 160; ++x) {
+      const Eigen::Vector2d right = calib::seen_by(rig.rig(), rig.point({x, y}).value()).right;
+      const bool is_inside = right.x() > 0 && right.x() < 159 && right.y() > 0 && right.y() < 119;
+      hidden += is_inside && !rig.match({x, y}) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hidden, 100);
+  EXPECT_LT(hidden, 160 * 120 / 10);
+}
+
 TEST(SyntheticRig, HasTheDisparityOfARecoveredCalibrationWithAnOffset) {
   const SyntheticRig synthetic(4, 80, 60);
   const Rig rig = recovered(synthetic.rig());
