@@ -55,12 +55,6 @@ ssram: {banks: {A: {}}}
 allocation: {left_image: A, right_image: A, disparity: A, left_lut: A, right_lut: A}
 matcher: {filter: none, window: 3, disparities: 4}
 """
-TOO_MANY = """
-extends: fpl2003
-name: many
-ssram: {{banks: {{{banks}}}}}
-allocation: {{left_image: [x0, x1], right_image: [x2, x3], disparity: [x4, x5], left_lut: x6, right_lut: x7}}
-""".format(banks=", ".join(f"x{depth}: {{words: {524288 + depth}}}" for depth in range(8)))
 
 
 def placements():
@@ -375,12 +369,6 @@ class Allocate(ProgramTest):
             self.assertEqual(self.rows(said)[1][0], before[0])
             self.store.unlink()
 
-
-    @program.slow
-    def test_too_many_allocations_are_refused(self):
-        process = self.allocate(board=self.board(TOO_MANY), banks=8)
-        self.refused_in_one_line(process, "--banks = 8: more than 5000000 different allocations")
-        self.assertFalse(self.store.exists())
 
     def test_stripes_are_refused(self):
         self.refused(run("allocate", "eight-banks-four-lanes", "--banks", "8", "--out", self.folder / "a.db"),

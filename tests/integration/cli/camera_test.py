@@ -66,16 +66,6 @@ class Recording(CameraTest):
                 self.assertEqual((self.out / name).read_bytes(), (cycle / name).read_bytes())
             self.assertNotIn("failed", self.stats())
 
-    def test_it_changes_no_other_figure(self):
-        self.camera("--frames", "5")
-        stats = self.stats()
-        self.camera("--frames", "5", "--record", "--verify")
-        self.assertEqual(self.stats(), stats)
-
-    def test_a_recorded_run_is_repeated_by_diff(self):
-        self.camera("--frames", "3", "--record")
-        self.succeeds(run("diff", self.out, self.out))
-
 
 class Figures(CameraTest):
 

@@ -1,11 +1,11 @@
 """diagram: the memory chart of boards and of runs."""
 
+import json
 import pathlib
 import re
 import xml.etree.ElementTree as ElementTree
 
 import program
-from boards_test import PRESETS
 from program import PRELOADED, SMALL, ProgramTest, run, sets
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -30,7 +30,7 @@ class Diagram(ProgramTest):
         return ElementTree.parse(self.svg).getroot()
 
     def test_draws_every_preset(self):
-        for name in PRESETS:
+        for name in (each["name"] for each in json.loads(run("boards", "--json").stdout)["boards"]):
             for source in ("camera", "preloaded"):
                 with self.subTest(name=name, source=source):
                     svg = self.chart(name, "--source", source)
@@ -38,15 +38,43 @@ class Diagram(ProgramTest):
                     self.assertEqual("part-pci" in groups(svg, "block"), source == "camera")
 
     def test_has_the_traffic_of_a_run(self):
-        for options in ((*PRELOADED, "--frames", 3), ("--frames", 5)):
-            self.succeeds(run("run", "fpl2003", *SMALL, *self.pair, *options, "--out", self.out))
-            edges = groups(self.chart(self.out), "edge").values()
-            for bank in self.stats()["banks"]:
-                rates = [float(edge.get("data-mbps")) for edge in edges
-                         if edge.get("data-to") == "bank-" + bank["name"]]
-                self.assertAlmostEqual(sum(rates), bank["megabytes_per_second"], places=9)
-            for edge in edges:
-                value = float(edge.get("data-mbps"))
+        load = sets("pci.load={burst_words: 8, interval_us: 20}")
+        to_host = sets("capture.destination=host_memory")
+        for board, *options in (("fpl2003", *PRELOADED), ("eight-banks-four-lanes", *PRELOADED),
+                                ("sdram", *PRELOADED), ("fpl2003", *load), ("two-banks", *load, *to_host)):
+            command = ["run", board, *SMALL, *options, "--timing-only", "--frames", 3, "--out", self.out]
+            self.succeeds(run(*command))
+            values = json.loads(self.succeeds(run("check", self.out / "config.yaml", "--json")))["values"]
+            self.has_traffic(groups(self.chart(self.out), "edge"), self.stats(), values)
+
+    def has_traffic(self, edges, stats, values):
+        """The links of each bank, port and PCI master have the sums of the figures."""
+        rate = lambda edge: float(edge.get("data-mbps"))
+        sum_of = lambda block: sum(rate(edge) for edge in edges.values()
+                                   if block in (edge.get("data-from"), edge.get("data-to")))
+        for bank in stats["banks"]:
+            self.assertAlmostEqual(sum_of("bank-" + bank["name"]), bank["megabytes_per_second"], places=9)
+        for port in {each["name"].split(".")[0] for each in stats["ports"]}:
+            grants = sum(each["grants"] for each in stats["ports"] if each["name"].split(".")[0] == port)
+            expected = 4 * grants * values["fpga.clock_mhz"] / stats["cycles"]
+            if port == "host" and "pci" in stats:
+                expected += rate(edges["edge-local_bus-host"])
+            self.assertAlmostEqual(sum_of("port-" + port), expected, places=9)
+        if "pci" in stats:
+            mbps = lambda words: 4 * words * values["pci.clock_mhz"] / stats["pci"]["clocks"]
+            words = {each["name"]: each["words"] for each in stats["pci"]["masters"]}
+            for master, its in words.items():
+                link = f"edge-{'cpu' if master == 'host' else master}-pci"
+                self.assertAlmostEqual(rate(edges[link]), mbps(its), places=9)
+            captured = words["left_capture"] + words["right_capture"]
+            is_to_host = values["capture.destination"] == "host_memory"
+            self.assertAlmostEqual(rate(edges["edge-pci-host_memory"]),
+                                   mbps(words["bridge"] + captured * is_to_host), places=9)
+            self.assertAlmostEqual(rate(edges["edge-pci-bridge"]), mbps(stats["bridge"]["posted_words"]),
+                                   places=9)
+        for edge in edges.values():
+            with self.subTest(edge.get("id")):
+                value = rate(edge)
                 shown = [] if value == 0 else ["<0.1" if value < 0.05 else f"{value:.1f}"]
                 self.assertEqual([text.text for text in edge.iter(SVG + "text")], shown)
 

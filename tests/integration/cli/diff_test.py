@@ -1,6 +1,5 @@
 """diff: two runs, run again and compared frame by frame and row by row."""
 
-import csv
 import functools
 import json
 import shutil
@@ -14,7 +13,6 @@ from program import ProgramTest, Terminal, run, sets, sha256, shared_folder
 SHARED = sets("allocation.left_lut=bank0")  # with every second left picture
 SCENE = [*SMALL, "--synthetic", "1"]
 TIMING = ["--timing-only", *sets("matcher.filter=none")]
-PARTING = "they part in frame "
 ONE_FRAME = "disparities: the same, pixel for pixel, in 1 frame"
 
 
@@ -29,11 +27,6 @@ def shared_run(*arguments):
 
 def stats_of(folder):
     return json.loads((folder / "stats.json").read_text())
-
-
-def table_of(path):
-    with open(path) as file:
-        return list(csv.DictReader(file))
 
 
 class DiffTest(ProgramTest):
@@ -75,21 +68,6 @@ class Differences(DiffTest):
         self.assertEqual(lines, [f"A: {a}", f"B: {self.b}", "", "no difference", "", same])
         self.assertIn("no difference", self.lines(a, a))
 
-    def test_the_verdict_says_which_run_is_faster_and_where_the_difference_arises(self):
-        a, b = shared_run(*SCENE, "--frames", "2"), shared_run(*SCENE, *SHARED, "--frames", "2")
-        of_a, of_b = stats_of(a), stats_of(b)
-        rates = [stats["frames_per_second"]["core"] for stats in (of_a, of_b)]
-        gain = f"{rates[0] - rates[1]:.3f} frames/s ({100 * (rates[0] / rates[1] - 1):.2f} %), core only"
-        most = max(of_b["blame"], key=lambda row: row["cycles"])
-        wait = (f"{most['port']} waits {most['cycles'] / 2:.0f} cycles a frame more on {most['bank']} for "
-                f"{most['by']}")
-        self.assertEqual(self.verdict(a, b),
-                         f"A is faster by {gain}: in B {wait}; the disparities are the same.")
-        self.assertEqual(self.verdict(b, a),
-                         f"B is faster by {gain}: in A {wait}; the disparities are the same.")
-        same = f"A and B are equally fast, {rates[0]:.3f} frames/s, core only; the disparities are the same."
-        self.assertEqual(self.verdict(a, a), same)
-
     def test_the_verdict_names_what_limits_if_no_wait_differs_and_the_clock_if_it_does(self):
         a = shared_run(*SCENE, "--frames", "2")
         lines = shared_run(*SCENE, *sets("matcher.fetch=line_buffer"), "--frames", "2")
@@ -129,64 +107,14 @@ class Differences(DiffTest):
             self.assertTrue(least < share < most, share)
             self.assertIn(said, self.verdict(*folders))
 
-    def test_a_key_without_effect_changes_no_figure(self):
-        lines = self.lines(shared_run(*SCENE), shared_run(*SCENE, *sets("cameras.frame_rate_hz=25")))
-        self.assertEqual(lines[3:5], ["board A B", "cameras.frame_rate_hz 29.97 25"])
-        self.assertEqual(lines[6:], ["no figure and no row differs", "", ONE_FRAME])
-
-
-class WorkedValues(DiffTest):
-    """Those of models/contract.md, section 2: what a shared bank costs."""
-
-    def setUp(self):
-        super().setUp()
-        self.alone, self.shared = shared_run(*TIMING), shared_run(*TIMING, *SHARED)
-
-    def test_the_costs_are_blamed_on_the_bank(self):
-        lines = self.lines(self.alone, self.shared)
-        for line in (
-            "allocation.left_lut bank6 bank0",
-            "cycles 2150995 4288597 +2137602",
-            "frames_per_second.core 18.596 9.32706 -9.26899",
-            "bound.core_limited_by matcher bank bank0",
-            "frame 0 2150995 4288597 +2137602",
-            "left_lut on bank0 for left_pixel 0 2137602 +2137602",
-            "left_lut stall_cycles 0 2137602 +2137602",
-            "bank0 contended_cycles 0 2137602 +2137602",
-            "bank6 busy_cycles 2142720 0 -2142720",
-            "disparities: not compared: there are none in both",
-        ):
-            self.assertIn(line, lines)
-        lines = self.lines(self.shared, self.alone)
-        self.assertIn("frame 0 4288597 2150995 -2137602", lines)
-        self.assertIn("left_lut on bank0 for left_pixel 2137602 0 -2137602", lines)
-        for line in self.succeeds(run("diff", self.alone, self.shared)).splitlines():
-            self.assertLessEqual(len(line), max(100, len(str(self.alone)) + 3), line)
-
 
 class Frames(DiffTest):
-    def test_different_numbers_are_compared_as_far_as_both_go(self):
-        lines = self.lines(*(shared_run(*SCENE, "--frames", frames) for frames in ("3", "4")))
-        self.assertIn("frames 3 4", lines)
-        self.assertIn("frames 3 4 +1", lines)
-        parts = "figures are of all 3 frames of A and all 4 of B, cycles and rows of the first 3"
-        self.assertIn(parts, lines)
-        self.assertIn("disparities: the same, pixel for pixel, in 3 frames", lines)
-        self.assertFalse([line for line in lines if line.startswith(PARTING)])
-
-    def test_frames_of_another_size_are_compared_as_a_whole(self):
-        narrow = sets("image.width=16", f"image.height={HEIGHT}")
-        a, b = shared_run(*SCENE), shared_run(*narrow, "--timing-only")
-        lines = self.lines(a, b)
-        sizes = f"images of {WIDTH}x{HEIGHT} in A, of 16x{HEIGHT} in B"
-        self.assertIn(f"rows: not compared: {sizes}", lines)
-        self.assertIn(f"disparities: not compared: {sizes}", lines)
-        self.assertIn("image.width 32 16", lines)
-        self.assertTrue([line for line in lines if line.startswith("frame 0 ")])
-        self.assertFalse([line for line in lines if line.startswith(PARTING)])
+    def test_rows_of_frames_of_another_size_are_refused(self):
+        narrow = shared_run(*sets("image.width=16", f"image.height={HEIGHT}"), "--timing-only")
+        rule = f"--csv: rows cannot be compared: images of {WIDTH}x{HEIGHT} in A, of 16x{HEIGHT} in B"
         with self.unchanged(self.folder):
-            process = run("diff", a, b, "--csv", self.folder / "rows.csv")
-            self.refused_in_one_line(process, f"--csv: rows cannot be compared: {sizes}")
+            process = run("diff", shared_run(*SCENE), narrow, "--csv", self.folder / "rows.csv")
+            self.refused_in_one_line(process, rule)
 
 
 class Disparities(DiffTest):
@@ -208,16 +136,6 @@ class Disparities(DiffTest):
 
 
 class Computer(DiffTest):
-    """The whole computer, whose cameras drop frames."""
-
-    def setUp(self):
-        super().setUp()
-        self.pairs = self.sequence(5)
-
-    def write(self, folder, *options):
-        source = [*CAMERA_RATES, "--sequence", self.pairs]
-        self.succeeds(run("run", "fpl2003", *SMALL, *source, *options, "--out", folder))
-
     def test_no_wait_of_the_core_is_named_if_the_faster_computer_has_the_slower_core(self):
         one_buffer = sets("allocation.left_image=bank0", "allocation.right_image=bank2")
         for folder, allocation in ((self.a, one_buffer), (self.b, sets("allocation.disparity=bank0"))):
@@ -230,49 +148,6 @@ class Computer(DiffTest):
             self.assertRegex(self.verdict(*runs), rf"^{name} is faster by .*, steady: the core is not faster "
                                                   rf"in {name}, "
                                                   "and the difference arises around it; ")
-
-    def test_its_figures_and_disparities_of_the_same_camera_frame_are_compared(self):
-        # With one buffer for each input the cameras' frames are others.
-        one_buffer = sets("allocation.left_image=bank0", "allocation.right_image=bank2")
-        for folder, options in ((self.a, []), (self.b, one_buffer)):
-            self.write(folder, "--frames", "8", "--save-frames", *options)
-        lines = self.lines(self.a, self.b)
-        for head in ("pci", "bridge", "cameras", "latency_ms"):
-            self.assertIn(f"{head} A B difference", lines)
-        a, b = (stats_of(folder)["cameras"][0]["dropped_frames"] for folder in (self.a, self.b))
-        self.assertGreater(b, a)
-        self.assertIn(f"left dropped_frames {a} {b} +{b - a}", lines)
-        for start in ("frames_per_second.system ", "frames_per_second.steady "):
-            self.assertTrue([line for line in lines if line.startswith(start)])
-        ours, theirs = ({path.name for path in (folder / "frames").iterdir()} for folder in (self.a, self.b))
-        self.assertNotEqual(ours, theirs)
-        both = len(ours & theirs)
-        self.assertGreater(both, 1)
-        self.assertEqual(lines[-1], f"disparities: the same, pixel for pixel, in {both} frames")
-
-    def test_a_rate_that_loses_pixels_says_so(self):
-        losing = sets("fpga.clock_mhz=8", "cameras.frame_rate_hz=1000", "pci.clock_mhz=1", "image.width=64",
-                      "image.height=24", "matcher.window=3", "capture.fifo_words=16",
-                      "capture.fifo_trigger_words=4")
-        for out, frames in ((self.a, 14), (self.b, 20)):
-            self.succeeds(run("run", "fpl2003", "--timing-only", "--frames", frames, *losing, "--out", out))
-        lost = [sum(each["dropped_pixels"] for each in stats_of(out)["cameras"]) for out in (self.a, self.b)]
-        self.assertIn(", with {} lost pixels in A and {} in B".format(*lost),
-                      self.verdict(self.a, self.b))
-        self.assertIn("\nframes_per_second.steady, losing pixels ", "\n".join(self.lines(self.a, self.b)))
-
-    def test_it_is_compared_with_the_board_alone(self):
-        self.write(self.a, "--frames", "3")
-        self.write(self.b, "--frames", "1", *PRELOADED)
-        only = "pci, bridge, cameras and latency: only in"
-        for a, b, line, source in ((self.a, self.b, f"{only} A", "source camera preloaded"),
-                                   (self.b, self.a, f"{only} B", "source preloaded camera")):
-            lines = self.lines(a, b)
-            self.assertIn(line, lines)
-            self.assertIn(source, lines)
-        self.write(self.a, "--frames", "1")
-        nothing = "disparities: not compared: no camera frame is in both"
-        self.assertEqual(self.lines(self.a, self.b)[-1], nothing)
 
 
 class Sources(DiffTest):

@@ -1,5 +1,6 @@
-"""What programs of users read keeps its form: the keys and values of stats.json, the columns and rows of the
-database of a sweep, and the table of keys equal the files in the folder `frozen`.
+"""What users and their programs read keeps its form: the keys and values of stats.json, the tables of a run,
+the columns and rows of the database of a sweep, the table of keys, and what the commands print. All of it
+equals the files in the folder `frozen`.
 
 With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a change of the contract.
 """
@@ -7,10 +8,11 @@ With STEREOTLM_FREEZE=1 the test writes these files. A change of them is a chang
 import json
 import os
 import pathlib
+import shlex
 import sqlite3
-import tempfile
 import unittest
 
+import jsonschema
 from pictures import noise, pgm
 from program import PRELOADED, ProgramTest, run, sets
 
@@ -54,6 +56,47 @@ vary:
 """,
 }
 
+BOUNDS = [
+    ["fpl2003"],
+    ["fpl2003", *sets("allocation.left_lut=bank0", "allocation.disparity=[bank5, bank5, bank1]")],
+    ["fpl2003", *sets("matcher.fetch=line_buffer", "matcher.disparities=254")],
+    ["eight-banks-four-lanes"],
+    ["sdram"],
+]
+
+SMALL = ["fpl2003", *sets("image.width=32", "image.height=24")]
+NARROW = ["fpl2003", *sets("image.width=16", "image.height=24")]
+SHARED = sets("allocation.left_lut=bank0")
+CAMERAS = sets("cameras.frame_rate_hz=1000", "fpga.clock_mhz=3.745")
+CAPTURES = [*CAMERAS, *sets("allocation.left_image=[bank0, bank0]", "allocation.disparity=[bank0, bank0]")]
+SCENE = ["--synthetic", "1"]
+EXPLAINED = [
+    [*SMALL, *PRELOADED, *SHARED],
+    [*SMALL, *PRELOADED, *sets("matcher.rows=4", "matcher.disparities=4", "fpga.result_fifo_words=4")],
+    [*SMALL, *CAMERAS],
+]
+CONFLICTS = [
+    [*SMALL, *PRELOADED, *SCENE],
+    [*SMALL, *PRELOADED, *SCENE, *SHARED, "--frames", "3"],
+    [*SMALL, *CAPTURES, "--timing-only", "--frames", "3"],
+]
+LOSING = ["fpl2003", "--timing-only", *sets("image.width=64", "image.height=24", "matcher.window=3",
+                                            "cameras.frame_rate_hz=1000", "fpga.clock_mhz=8",
+                                            "pci.clock_mhz=1", "capture.fifo_words=16",
+                                            "capture.fifo_trigger_words=4")]
+# Two runs that differ: in a bank of the paper's board, in frames and rows, in what cameras deliver, in size,
+# in their source, in pixels that are lost.
+TIMING = ["fpl2003", *PRELOADED, "--timing-only", *sets("matcher.filter=none")]
+DIFFERENT = [
+    (TIMING, [*TIMING, *SHARED]),
+    ([*SMALL, *PRELOADED, *SCENE, "--frames", "3"], [*SMALL, *PRELOADED, *SCENE, *SHARED, "--frames", "4"]),
+    ([*SMALL, *CAMERAS, *SCENE, "--frames", "8", "--save-frames"],
+     [*SMALL, *CAPTURES, *SCENE, "--frames", "8", "--save-frames"]),
+    ([*SMALL, *PRELOADED, *SCENE], [*NARROW, *PRELOADED, "--timing-only"]),
+    ([*SMALL, *CAMERAS, *SCENE], [*SMALL, *PRELOADED, *SCENE]),
+    ([*LOSING, "--frames", "14"], [*LOSING, "--frames", "20"]),
+]
+
 
 def as_lines(stats):
     """A line for each figure, its path and its value."""
@@ -93,33 +136,57 @@ class Frozen(ProgramTest):
             return
         self.assertMultiLineEqual(path.read_text(), text)
 
+    def expect_printed(self, name, *commands):
+        text = ""
+        for command in commands:
+            said = self.succeeds(run(*command, cwd=self.folder))
+            if "--json" in command:
+                jsonschema.validate(json.loads(said), json.loads(run("keys", "--schema", command[0]).stdout))
+            text += f"$ stereotlm {shlex.join(command)}\n{said}"
+        self.expect(name, text)
+
     def test_the_keys_and_values_of_stats_json(self):
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            for name, arguments in RUNS.items():
-                pictures = []
-                if "--timing-only" not in arguments:
-                    size = [int(word.split("=")[1]) for word in arguments
-                            if word.startswith(("image.width", "image.height"))]
-                    for side, seed in (("left", 1), ("right", 2)):
-                        (folder / f"{name}_{side}.pgm").write_bytes(pgm(*size, noise(*size, seed)))
-                        pictures += [f"--{side}", folder / f"{name}_{side}.pgm"]
-                done = run("run", *arguments, *pictures, "--out", folder / name)
-                self.assertEqual(done.returncode, 0, done.stderr)
-                stats = json.loads((folder / name / "stats.json").read_text())
-                self.expect(f"stats_{name}", as_lines(stats))
+        for name, arguments in RUNS.items():
+            pictures = []
+            if "--timing-only" not in arguments:
+                size = [int(word.split("=")[1]) for word in arguments
+                        if word.startswith(("image.width", "image.height"))]
+                for side, seed in (("left", 1), ("right", 2)):
+                    path = self.file(f"{name}_{side}.pgm", pgm(*size, noise(*size, seed)))
+                    pictures += [f"--{side}", path]
+            said = self.succeeds(run("run", *arguments, *pictures, "--out", self.folder / name))
+            self.expect(f"stats_{name}", as_lines(self.stats(self.folder / name)))
+            self.expect(f"printed_{name}", said)
+        for table in ("timeline", "latency", "rows"):
+            self.expect(table, (self.folder / "computer" / f"{table}.csv").read_text())
 
     def test_the_columns_and_rows_of_a_database(self):
         for name, plan in PLANS.items():
-            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
-                folder = pathlib.Path(folder)
-                (folder / "plan.yaml").write_text(plan)
-                done = run("sweep", folder / "plan.yaml", "--out", folder / "points.db")
-                self.assertEqual(done.returncode, 0, done.stderr)
-                database = sqlite3.connect(folder / "points.db")
+            with self.subTest(name):
+                store = self.folder / f"{name}.db"
+                self.succeeds(run("sweep", self.file("plan.yaml", plan), "--out", store))
+                database = sqlite3.connect(store)
                 text = "".join(table_of(database, table) for table in ("points", "keys", "blame"))
                 database.close()
                 self.expect(f"database_{name}", text)
+
+    def test_what_is_printed_of_boards(self):
+        names = [board["name"] for board in json.loads(run("boards", "--json").stdout)["boards"]]
+        self.expect_printed("boards", ["boards"], *(["check", name] for name in names))
+        self.expect_printed("bounds", *(["bounds", *board, "--area"] for board in BOUNDS))
+
+    def test_what_is_printed_of_simulations(self):
+        self.expect_printed("explain", *(["explain", *board] for board in EXPLAINED))
+        self.expect_printed("conflicts", *(["conflicts", *board] for board in CONFLICTS))
+        for number, pair in enumerate(DIFFERENT):
+            for name, command in zip("ab", pair):
+                self.succeeds(run("run", *command, "--out", f"{name}{number}", cwd=self.folder))
+        pairs = ((f"a{number}", f"b{number}") for number in range(len(DIFFERENT)))
+        self.expect_printed("diff", *(["diff", *pair] for pair in pairs))
+        shared = [*SMALL, *SHARED]
+        self.expect_printed("documents", ["check", *shared, "--json"], ["bounds", *shared, "--json"],
+                            ["conflicts", *shared, *PRELOADED, "--timing-only", "--json"],
+                            ["diff", "a1", "b1", "--json"], ["diff", "a1", "a1", "--json"])
 
     def test_the_table_of_keys(self):
         self.expect("keys", run("keys").stdout + run("keys", "--json").stdout)

@@ -29,13 +29,6 @@ class Json(ProgramTest):
         self.assertFalse(validator.is_valid({**document, "more": 1}), command)
         return document
 
-    def small_run(self, *options):
-        """The result folder of a small preloaded run with a shared bank, and its stats.json."""
-        self.succeeds(run("run", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1, "--frames", 2,
-                          *options,
-                          "--out", self.out))
-        return self.stats()
-
     def test_names_that_are_not_utf_8_are_shown_with_a_replacement(self):
         self.file(os.fsdecode(b"b\xff.yaml"), "extends: fpl2003\nname: other\n")
         for name, status in ((b"./b\xff.yaml", 0), (b"./none\xff.yaml", 2)):
@@ -56,20 +49,6 @@ class Json(ProgramTest):
             document = self.document("run", name, *SMALL, *PRELOADED, *options, "--timing-only")
             self.assertEqual(all("row_cycles" in bank for bank in document["banks"]), name == "sdram")
 
-    def test_bounds_are_those_of_a_run(self):
-        document = self.document("bounds", "fpl2003", *SMALL, *SHARED)
-        stats = self.small_run()
-        area = document["area"]
-        self.assertEqual({key: area[key] for key in stats["area"]}, stats["area"])
-        for part, count in (("luts", 1), ("flip_flops", 1), ("block_rams", 1), ("multipliers", 1)):
-            self.assertEqual(count * sum(row[part] for row in area["parts"]), stats["area"][part])
-        self.assertEqual((area["device"], area["fits"], area["smallest_device"]),
-                         ("xc2v6000", True, "xc2v1500"))
-        self.assertEqual(document["bound"]["core"], stats["bound"]["core"])
-        self.assertEqual(document["bound"]["core_limited_by"], stats["bound"]["core_limited_by"])
-        camera = {row["resource"]: row["frames_per_second"] for row in document["computer"]}["camera"]
-        self.assertEqual(camera, 29.97)
-
     def test_explain_names_what_is_impossible_and_a_queue_that_is_too_short(self):
         short = sets("matcher.rows=4", "matcher.disparities=4", "fpga.result_fifo_words=4")
         document = self.document("explain", "fpl2003", *SMALL, *PRELOADED, *short)
@@ -81,17 +60,6 @@ class Json(ProgramTest):
         changed = sets("matcher.rows=4", "matcher.disparities=4", f"{change['key']}={change['to']}")
         refused = self.refused(run("check", "fpl2003", *changed))
         self.assertIn(change["reason"], refused[0])
-
-    def test_conflicts_has_the_figures_of_a_run(self):
-        document = self.document("conflicts", "fpl2003", *SMALL, *PRELOADED, *SHARED, "--synthetic", 1,
-                                 "--frames", 2)
-        stats = self.small_run("--record")
-        self.assertEqual((document["cycles"], document["frames"]), (stats["cycles"], stats["frames"]))
-        waits = [{key: row[key] for key in ("port", "bank", "by", "cycles")} for row in document["waits"]]
-        blame = sorted(stats["blame"], key=lambda row: -row["cycles"])
-        self.assertEqual(sorted(waits, key=lambda row: -row["cycles"]), blame)
-        for row in document["waits"]:
-            self.assertAlmostEqual(row["cycles_percent"], 100 * row["cycles"] / stats["cycles"], places=6)
 
     def test_run_is_its_stats_json_and_what_the_table_says(self):
         for options in ([*PRELOADED, *SHARED], [*CAMERA_RATES, "--timing-only"]):
@@ -110,30 +78,6 @@ class Json(ProgramTest):
             self.assertEqual(f"{beside['accuracy']['answered_percent']:.2f}",
                              re.search(r"answered: (.*) %", table)[1])
 
-    def test_diff_has_what_differs_of_both_runs(self):
-        a, b = self.folder / "a", self.folder / "b"
-        common = ["run", "fpl2003", *SMALL, *PRELOADED, "--synthetic", 1, "--frames", 2]
-        self.succeeds(run(*common, "--out", a))
-        self.succeeds(run(*common, *SHARED, "--out", b))
-        document = self.document("diff", a, b)
-        self.assertEqual((document["a"], document["b"]), (str(a), str(b)))
-        self.assertEqual(document["settings"], [{"path": "allocation.left_lut", "a": "bank6", "b": "bank0"}])
-        self.assertEqual(document["options"], [])
-        of_a, of_b = self.stats(a), self.stats(b)
-        figures = {row["path"]: (row["a"], row["b"]) for row in document["figures"]}
-        self.assertEqual(figures["cycles"], (sum(of_a["frame_cycles"]), sum(of_b["frame_cycles"])))
-        self.assertEqual(figures["bound.core_limited_by"], ("matcher", "bank bank0"))
-        self.assertEqual(figures["frames_per_second.core"],
-                         (of_a["frames_per_second"]["core"], of_b["frames_per_second"]["core"]))
-        self.assertEqual(sum(row["cycles"] for row in document["rows"]["ranges"]),
-                         of_b["cycles"] - of_a["cycles"])
-        self.assertEqual(document["disparities"],
-                         {"frames": 2, "frames_that_differ": 0, "pixels_that_differ": 0})
-        self.assertRegex(document["verdict"], r"^A is faster by .*\.$")
-        alone = self.document("diff", a, a)
-        for part in ("settings", "options", "figures", "frames", "waits"):
-            self.assertEqual(alone[part], [])
-
     def test_boards_are_files_that_can_be_run(self):
         boards = self.document("boards")["boards"]
         self.assertEqual([board["name"] for board in boards][0], "fpl2003")
@@ -142,17 +86,6 @@ class Json(ProgramTest):
             self.assertEqual(board["file"].splitlines()[0], f"# {board['description']}")
         self.assertEqual(self.document("boards", "--show", "two-banks")["boards"],
                          [board for board in boards if board["name"] == "two-banks"])
-
-    def test_keys_are_those_of_a_board_file(self):
-        keys = {row["key"]: row for row in self.document("keys")["keys"]}
-        self.assertEqual(keys["matcher.window"],
-                         {"key": "matcher.window", "unit": "pixels", "range": "3..31, odd",
-                                                  "meaning": "rows and columns of the matching window"})
-        self.assertNotIn("unit", keys["cameras.trigger"])
-        board = self.succeeds(run("boards", "--show", "fpl2003"))
-        for section in ("cameras", "bridge"):
-            for key in re.search(rf"(?m)^{section}: {{(.*)}}", board)[1].split(","):
-                self.assertIn(f"{section}.{key.split(':')[0].strip()}", keys)
 
     def test_check_lists_the_problems_with_place_key_value_and_rule(self):
         text = ("extends: fpl2003\nname: a\nmatcher:\n  window: 6\n  cost: {census: 4}\nfoo: 1\nimage: "
@@ -180,22 +113,6 @@ class Json(ProgramTest):
         self.assertGreater(len(problems), 20)
         self.assertEqual(problems[-1]["place"], "command line")
         self.assertIn("--calibration", problems[-1]["message"])
-
-    def test_check_describes_a_board_without_problems(self):
-        changes = ("matcher.window=5", "fpga.clock_mhz=33.5", "fpga.device=xc2v1000")
-        document = self.document("check", "fpl2003", *SMALL, *sets(*changes))
-        area = self.document("bounds", "fpl2003", *SMALL, *sets(*changes))["area"]
-        values = document.pop("values")
-        self.assertEqual((values["matcher.window"], values["fpga.clock_mhz"]), (5, 33.5))
-        self.assertEqual(values["allocation.left_image"], ["bank0", "bank1"])
-        self.assertEqual((values["ssram.banks.bank7.words"], values["matcher.cost"]), (524288, "sad"))
-        listed = {key["key"] for key in self.document("keys")["keys"]}
-        self.assertEqual({re.sub(r"\.bank\d\.", ".NAME.", key) for key in values} - listed, set())
-        self.assertEqual(document, {
-            "schema": 1, "board": "fpl2003", "ok": True, "problems": [], "image": {"width": 32, "height": 24},
-            "window": 5, "disparities": 80, "banks": 8, "clock_mhz": 33.5, "device": "xc2v1000",
-            "fits": area["slices"] <= 5120, "smallest_device": "xc2v1500", "pins": 548})
-        self.assertGreater(area["slices"], 5120)
 
     def test_a_refused_command_prints_no_document(self):
         for command in ("bounds", "explain", "conflicts", "run"):

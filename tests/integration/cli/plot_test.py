@@ -2,16 +2,13 @@
 
 import random
 import re
-import shutil
 import sqlite3
-import subprocess
 import xml.etree.ElementTree
 
 import program
-from pictures import PYTHON, drawn
+from pictures import drawn
 from plots import ALLOCATIONS, SMALL_BOARD, PlotTest, change, make_database
 from program import PRELOADED, SMALL, run
-from tracked_files import ROOT
 
 SIZES = [3, 5, 7]
 PLAN = SMALL_BOARD + f"""
@@ -20,13 +17,6 @@ vary:
   matcher.disparities: [4, 8]
   matcher.fetch: [column, line_buffer]
   allocation.right_image: [[bank2, bank3], bank3]
-"""
-# The results lie in a bank of the tables too, so that ports wait.
-LANES = """
-board: eight-banks-four-lanes
-run: {source: preloaded}
-set: {image.width: 32, image.height: 24, allocation.disparity: {rows: [bank0, bank5]}}
-vary: {fpga.lanes: [1, 4]}
 """
 # Small images of cameras that are too fast where the host comes last.
 LOSING = """
@@ -249,21 +239,6 @@ class Stalls(FigureTest):
         least = min(stalls_of[key] for key in shown)
         self.assertLessEqual(max(stalls_of[key] for key in set(rows) - shown), least)
 
-    def test_the_lanes_of_a_port_are_one_with_their_mean(self):
-        store = self.sweep(LANES)
-        self.draw("stalls", store)
-        rows, blame = self.database(store)
-        means = {}
-        for point, port, bank, by, cycles in blame:
-            key = (point, port.split(".")[0], bank, by.split(".")[0])
-            means[key] = means.get(key, 0) + cycles / (rows[point]["fpga.lanes"] if "." in port else 1)
-        found = {(row["hash"], row["port"], row["bank"], row["by"]): float(row["cycles"])
-                 for row in self.table}
-        self.assertEqual(set(found), set(means))
-        for key, cycles in found.items():
-            self.assertAlmostEqual(cycles, means[key])
-        self.assertTrue(any("." in port for _, port, *_ in blame))
-
 
 class ParetoFront(FigureTest):
     COLUMNS = ("area.luts", "latency_ms.capture_to_host.p50")
@@ -319,29 +294,6 @@ class Names(FigureTest):
             for name in names:
                 self.assertIn(name, texts)
             self.assertIn("6 of 6 points of $x_2$ <i> 5%.db.", texts)
-
-
-class Studies(FigureTest):
-    def test_the_study_of_fetch_takes_for_fitting_what_plot_does(self):
-        """Neither too many slices, block RAMs nor multipliers."""
-        (self.folder / "results" / "fetch").mkdir(parents=True)
-        (self.folder / "sw").symlink_to(ROOT / "sw")
-        for name in ("study.py", "fetch/report.py"):
-            shutil.copy(ROOT / "results" / name, self.folder / "results" / name)
-        areas = ["slices_percent", "block_rams", "block_rams_percent", "multipliers_percent"]
-        header = [*HEADER, "matcher.disparities", "matcher.fetch", "frames_per_second.core"]
-        header += [f"area.{part}" for part in areas]
-        rows = [("made", "preloaded", 7, disparities, fetch, 18, *area) for fetch in ("column", "line_buffer")
-                for disparities, *area in ((80, 50, 9, 10, 0), (120, 70, 9, 100, 100), (160, 80, 9, 101, 0),
-                                           (200, 90, 9, 50, 101), (240, 101, 9, 50, 0))]
-        core = make_database(self.folder / "core.db", header, rows)
-        run_it = "run: {source: camera, frames: 4}"
-        plan = f"board: fpl2003\n{run_it}\nvary: {{matcher.fetch: [column, line_buffer]}}\n"
-        report = self.folder / "results" / "fetch" / "report.py"
-        command = [PYTHON, "-B", report, core, self.sweep(plan)]
-        self.succeeds(subprocess.run(command, capture_output=True, text=True, timeout=120, check=False))
-        row = "| 7x7 | 18.00 | 18.00 | 1.0 | 50.0 | 50.0 | 9 | 9 | 120 | 120 |\n"
-        self.assertIn(row, report.with_name("README.md").read_text())
 
 
 if __name__ == "__main__":

@@ -7,8 +7,6 @@ import html
 import io
 import json
 import math
-import pathlib
-import random
 import re
 import shlex
 import sqlite3
@@ -245,30 +243,6 @@ class Numbers(PageTest):
                                 for key, value in row.items()}
             self.assertEqual(shown, [none(row) for row in recorded])
 
-    def test_of_the_memory_chart_add_up_to_the_traffic_of_each_bank(self):
-        self.browser.open(page_of(computer()))
-        links = self.browser.table("memory")
-        for bank in self.stats(computer())["banks"]:
-            ends = lambda row: bank["name"] in (row["from"], row["to"])
-            total = sum(number(row["megabytes_per_second"]) for row in links if ends(row))
-            self.assertAlmostEqual(total, bank["megabytes_per_second"], places=9)
-
-    def test_of_the_gain_of_knobs_equal_explain(self):
-        folder = core()
-        self.browser.open(page_of(folder))
-        text = self.succeeds(run("explain", folder / "config.yaml", *PRELOADED))
-        shown = {f"{row['knob']}: {row['from']} -> {row['to']}": row for row in self.browser.table("knobs")}
-        lines = text.split("one change at a time")[1].splitlines()[2:]
-        steps = [line for line in lines if line[:10].strip().replace(".", "").isdigit()]
-        self.assertGreater(len(steps), 8)
-        for line in steps:
-            rate, gained, _, _, _, step = line.split(None, 5)
-            if gained == "+0.000":
-                continue  # a change that saves a bank: the page has it without a gain
-            row = shown[re.sub(", [+-][0-9]+ (multipliers|pins)", "", step).replace(" *:", ":")]
-            self.assertEqual(f"{number(row['frames_per_second']):.3f}", rate)
-            self.assertEqual(row["changes_disparities"], str(" *:" in step).lower())
-
     def test_of_a_database_equal_the_database(self):
         page = page_of(database())
         self.browser.open(page)
@@ -334,10 +308,6 @@ class Lanes(PageTest):
         self.assertIn("left_pixel.3", names)
         self.follow("one row, with the mean")
 
-    def test_of_boards_with_one_are_not_spoken_of(self):
-        self.browser.open(page_of(core()))
-        self.assertEqual(self.browser.all("#lanes"), [])
-
 
 class Drawing(PageTest):
     """Bars, dots and cells are as long, high and far as their numbers say."""
@@ -380,35 +350,6 @@ class Drawing(PageTest):
             tick = place(float(text.replace("k", "e3")))
             self.assertAlmostEqual((label["left"] + label["right"]) / 2, tick, delta=1.5)
             self.assertAlmostEqual(line["left"], tick, delta=1.5)
-
-    def test_columns_are_as_high_as_cycles_and_latencies(self):
-        self.browser.open(page_of(computer()))
-        for chart, column in (("frames", "cycles"), ("latency", "latency_ps")):
-            numbers = [number(row[column]) for row in self.browser.table(chart)]
-            columns = self.boxes(f"#{chart} .mark")
-            for box, amount in zip(columns, numbers, strict=True):
-                share = box["height"] / columns[-1]["height"]
-                self.assertAlmostEqual(share, amount / numbers[-1], delta=0.01)
-            self.assertEqual(len({round(box["bottom"]) for box in columns}), 1)
-
-    def test_cells_of_blame_are_shares_of_all_cycles_and_close(self):
-        self.browser.open(page_of(core()))
-        stats = self.stats(core())
-        (blame,) = stats["blame"]
-        share = f"{100 * blame['cycles'] / stats['cycles']:.1f}"
-        rows = self.browser.run("return [...document.querySelectorAll('#blame .plot tr')]"
-                                ".map(row => [...row.cells].map(cell => cell.textContent))")
-        of_port = lambda waits, rest: [
-            waits if port["name"] == blame["port"] else rest for port in stats["ports"]]
-        self.assertEqual(rows[1:], [[f"{blame['bank']} · {blame['by']}", *of_port(share, "")],
-                                    ["sum", *of_port(share, "0.0")], ["counter", *of_port("✓", "✓")]])
-
-    def test_pointed_at_tells_the_numbers_of_a_row(self):
-        self.browser.open(page_of(core()))
-        row = self.browser.table("rows")[1 + 12]
-        self.browser.drag("#rows .brush-y", (0.05, 0.52), (0.05, 0.521))
-        self.assertRegex(self.browser.text("#tooltip"), r"^row 12: bank0 makes accesses in .* of the cycles"
-                         f".* in {row['cycles']} cycles")
 
 
 class Database(PageTest):
@@ -460,19 +401,6 @@ class Database(PageTest):
         self.assertGreater(len(seen), 90)
         config = self.file("point.yaml", self.browser.text("#board pre"))
         self.succeeds(run("check", config))
-
-    def test_names_the_board_of_all_points(self):
-        self.assertRegex(self.browser.text("header .note"), r"^fpl2003: \d+ keys vary")
-
-    def test_front_holds_what_no_point_beats(self):
-        pairs = lambda chart: sorted(
-            (float(row["area.slices"]), float(row["frames_per_second.core"])) for row in self.rows(chart)
-        )
-        rows = pairs("points")
-        beaten = lambda a: any(b != a and b[0] <= a[0] and b[1] >= a[1] for b in rows)
-        self.assertEqual(pairs("scatter"), [row for row in rows if not beaten(row)])
-        self.browser.choose("best-y", "min")
-        self.assertIn(min(row[1] for row in rows), [row[1] for row in pairs("scatter")])
 
     def test_shows_other_columns_and_sorts_by_them(self):
         drawn = lambda: self.browser.run("return document.querySelector('#scatter canvas').toDataURL()")
@@ -620,20 +548,6 @@ class Tools(PageTest):
         self.browser.open(page_of(shared_run("alone", *PRELOADED)))
         self.assertEqual(self.browser.all("#rows .command"), [])
 
-    def test_the_time_line_is_zoomed_by_brush_and_buttons(self):
-        self.browser.open(page_of(computer()))
-        axis = lambda: self.browser.text("#time .axis")
-        seen = [axis()]
-        self.browser.drag("#time .brush-x", (0.3, 0.98), (0.5, 0.98))
-        seen.append(axis())
-        self.browser.button("time", "Later")
-        seen.append(axis())
-        self.assertEqual(len(set(seen)), 3)
-        self.browser.button("time", "All")
-        events = (computer() / "timeline.csv").read_text().splitlines()[1:]
-        instant = sum(line.startswith("wait") and line.split(",")[4] == line.split(",")[5] for line in events)
-        self.assertEqual(len(self.browser.all("#time .mark")), len(events) - instant)
-
     def test_the_time_line_shows_where_the_page_has_no_events(self):
         def change(data):
             recording = data["run"]["recording"]
@@ -707,18 +621,6 @@ class Tools(PageTest):
         self.assertEqual(rows["left_lut – bank6"]["megabytes_per_second_b"], "0")
         self.assertEqual(rows["left_lut – bank0"]["megabytes_per_second_a"], "0")
 
-    def test_a_chart_wider_than_the_page_opens_where_something_is(self):
-        for page in (page_of(computer()), page_of(*two_computers())):
-            self.browser.open(page, width=390)
-            left, right = self.browser.run(
-                "const box = element => element.getBoundingClientRect();const memory = "
-                "document.querySelector('.memory');const blocks = "
-                "[...memory.querySelectorAll('svg:not([hidden]) .block')].map(box);const highest = "
-                "Math.min(...blocks.map(each => each.top));const first = blocks.find(each => each.top === "
-                "highest);return [first.left - box(memory).left, box(memory).right - first.right]")
-            self.assertGreater(left, 0)
-            self.assertGreater(right, 0)
-
     def test_keys_are_searched(self):
         self.browser.open(page_of(core()))
         self.browser.choose("search-keys", "left_lut")
@@ -757,10 +659,6 @@ class Answers(PageTest):
                          f"on bank1.")
         self.assertEqual(self.browser.text("#blame h2"), first)
 
-    def test_a_recording_names_what_the_host_moves(self):
-        self.opened(computer(), lambda run: None)
-        self.assertRegex(self.answer("Who waits for whom?"), r"left_lut waits in .* % for host capture")
-
     def test_few_tiles_with_half_of_the_waits_are_named(self):
         def change(run):
             recording = run["recording"]
@@ -772,37 +670,6 @@ class Answers(PageTest):
                           (35, "Over all columns.")):
             self.opened(core(), change)
             self.assertIn(text, self.answer("Where in the picture?"))
-
-    def test_each_resource_of_the_fpga_has_its_own_number(self):
-        def change(run):
-            run["area"]["device"].update(block_rams=50, multipliers=200)
-            run["area"].update(block_rams=10, multipliers=10)
-
-        self.opened(core(), change)
-        uses = self.browser.text("#area .uses")
-        self.assertIn("block RAMs 10 of 50  20.0 %", uses)
-        self.assertIn("multipliers 10 of 200  5.0 %", uses)
-
-    def test_the_first_change_can_be_pasted_and_its_conditions_are_stated(self):
-        self.opened(core(), lambda _: None)
-        answer = self.answer("What to change first?")
-        (step,
-         ) = [step
-              for step in data_of(page_of(core()))["run"]["knobs"]["changes"] if step["key"] == "a bank more"]
-        self.assertIn(f"To try it: --set '{step['sets'][0]}'.", answer)
-        self.assertIn("that gain at least 1 % and more than the uncertainty.", answer)
-
-    def test_dropped_frames_have_their_reasons_and_no_judgement(self):
-        def change(run):
-            camera = run["stats"]["cameras"][0]
-            camera.update(frames=26, dropped_not_armed=11, dropped_busy=1, dropped_frames=12)
-            run["stats"]["frames_per_second"].update(steady=400, steady_uncertainty=2)
-
-        dropped = ("12 of 26 frames of the left camera are dropped: 11 because its capture board is not "
-                   "armed as they begin, 1 because the capture before them still runs. The cameras deliver "
-                   "1000.0 frames/s; the run makes 400.0 ± 2.00 frames/s, steady. A capture board is armed")
-        self.opened(computer(), change)
-        self.assertIn(dropped, self.answer("What limits?"))
 
     def test_a_rate_above_its_bound_is_at_it_within_its_uncertainty(self):
         def change(run):
@@ -1009,24 +876,6 @@ class Names(PageTest):
         self.browser.open(page)
         self.browser.run("document.querySelector('#points button[data-row]').click()")
         self.is_harmless(NASTY, NASTY_FOLDER)
-
-
-class Large(PageTest):
-    def test_12000_points_are_shown_and_brushed(self):
-        points = 12000
-
-        def change(data):
-            drawn = random.Random(1)
-            column = lambda name, draw: {"name": name, "list": [draw() for _ in range(points)]}
-            columns = [column(f"figure_{i}", drawn.random) for i in range(8)]
-            columns.append(column("matcher.window", lambda: drawn.choice([3, 5, 7])))
-            data["database"].update(points=points, columns=columns, keys=["matcher.window"],
-                                    boards={"lines": ["name: a\n"], "points": [[0]] * points})
-
-        self.opened(page_of(database()), change)
-        self.browser.drag("#scatter .brush-xy", (0.1, 0.1), (0.9, 0.9))
-        self.assertGreater(self.selected_points(), points // 4)
-        self.assertLess(self.selected_points(), points)
 
 
 if __name__ == "__main__":

@@ -88,12 +88,6 @@ class Run(ReportTest):
         self.assertEqual(os.system(line), 0)
         self.assertEqual(self.result(again), self.result(folder))
 
-    def test_with_cameras_has_their_bounds(self):
-        data = self.data(self.run_of("a", *CAMERA_RATES, "--frames", "3"))["run"]
-        names = [bound["resource"] for bound in data["bounds"]["computer"]]
-        self.assertEqual(names[:3], ["camera", "pci", "bridge"])
-        self.assertEqual(names[3:], [f"bank bank{number}" for number in range(8)])
-
     def test_without_pixels_has_no_pictures(self):
         self.assertNotIn("pictures", self.data(self.run_of("a", *PRELOADED, "--timing-only"))["run"])
 
@@ -263,14 +257,6 @@ class RecordedFiles(ReportTest):
 
 
 class TwoRuns(ReportTest):
-    def test_differences_of_rows_add_up(self):
-        a = self.run_of("a", *PRELOADED, "--frames", "2")
-        b = self.run_of("b", *PRELOADED, *SHARED, "--frames", "2")
-        difference = self.data(a, b)["difference"]
-        self.assertEqual(sum(difference["rows"]["cycles"]), self.stats(b)["cycles"] - self.stats(a)["cycles"])
-        self.assertEqual(difference["rows"]["parting"]["row"], 0)
-        self.assertEqual(difference["disparities"]["pixels_that_differ"], 0)
-
     def test_have_the_verdict_of_diff_and_the_last_camera_frame_of_both(self):
         frames = ["--frames", "6", "--save-frames"]
         a = self.run_of("a", *CAMERA_RATES, *frames)
@@ -295,12 +281,6 @@ class TwoRuns(ReportTest):
         self.assertIn("host capture", dict(stalls))
         self.assertEqual(sum(cycles for _, cycles in stalls),
                          sum(row["cycles"] for row in self.stats(b)["blame"]))
-
-    def test_of_different_sizes_have_no_rows(self):
-        a = self.run_of("a", *PRELOADED)
-        b = self.run_of("b", *PRELOADED, size=sets("image.width=32", "image.height=28"))
-        difference = self.data(a, b)["difference"]
-        self.assertIn("images of 32x24 in A", difference["rows"]["not_compared"])
 
 
 class Refusals(ReportTest):

@@ -6,7 +6,6 @@ import json
 import os
 import re
 import sys
-import unittest
 
 import jsonschema
 import yaml

@@ -1,10 +1,8 @@
 """sweep --launcher slurm with commands in place of Slurm's that fail, or whose jobs do."""
 
-import contextlib
 import os
 import re
 import signal
-import sqlite3
 
 import program
 from program import run
@@ -177,20 +175,6 @@ class Folders(SlurmCommands):
                 (text, f"--out {text}: not a database"),
             ):
                 self.refused_in_one_line(self.launch(store=store), problem)
-
-    def test_databases_that_do_not_fit_are_refused(self):
-        words = '"ssram.banks.{}.words"'
-        for change, problem in (
-            ("UPDATE points SET version = '0'", "holds points of version 0; this is version"),
-            (f"ALTER TABLE points RENAME COLUMN {words.format('bank0')} TO {words.format('BANK0')}",
-             "only in case: give another file"),
-        ):
-            self.store.unlink(missing_ok=True)
-            self.succeeds(self.sweep())
-            with contextlib.closing(sqlite3.connect(self.store)) as store:
-                store.executescript(change)
-            self.refused_in_one_line(self.launch(), f"--out {self.store}: ", problem)
-            self.assertFalse(self.shards.exists())
 
 
 if __name__ == "__main__":

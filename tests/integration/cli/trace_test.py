@@ -7,7 +7,7 @@ import signal
 import sqlite3
 
 import program
-from program import (CAMERA_RATES, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets, wait_until)
+from program import CAMERA_RATES, PRELOADED, PROGRESS, SMALL, ProgramTest, Terminal, run, sets
 
 CONTENDED = sets("allocation.left_lut=bank0", "allocation.left_image=[bank0, bank0]")
 TIMING = ["--timing-only", *CONTENDED]
@@ -34,19 +34,6 @@ class Files(TraceTest):
         self.assertEqual(self.traced("--frames", 3, *trace("perfetto", "sqlite", "vcd"), "--trace-window",
                                      "frame=1,rows=3..4"), plain)
         self.is_in(self.folder, "left.pgm", "right.pgm", "run.gtkw", "run.perfetto", "run.sqlite", "run.vcd")
-
-    def test_replace_earlier_ones_as_a_whole(self):
-        window = ["--trace-window", "frame=0,rows=3..4"]
-        formats = ("perfetto", "sqlite", "vcd", "vcd:other.fst")
-        options = [word for form in formats for word in ("--trace",
-                                                         form if ":" in form else f"{form}:run.{form}")]
-        self.traced(*options, "--trace-window", "frame=0,rows=2..4", "--frames", 3)
-        before = self.result(self.folder)
-        self.traced(*options, *window)
-        after = self.result(self.folder)
-        for name in ("run.perfetto", "run.sqlite"):
-            self.assertTrue(before[name] != after[name], name)
-        self.assertEqual(self.rows_of("SELECT DISTINCT frame FROM runs"), [(0,)])
 
     def test_of_a_computer_have_its_buses_and_events(self):
         self.traced("--frames", 3, *trace("sqlite"), "--trace-window", "cycles=0..100000", "--out", self.out,
@@ -84,19 +71,6 @@ class Files(TraceTest):
                    f"sqlite:{self.folder / 'run.sqlite'}"]
         self.assertEqual(Terminal(command).interrupt(PROGRESS, signal.SIGINT)[0], 130)
         self.assertEqual(self.rows_of("SELECT count(DISTINCT frame) FROM runs"), [(self.stats()["frames"],)])
-
-    def test_of_a_killed_run_are_not_there(self):
-        self.traced(*trace("sqlite"))
-        earlier = (self.folder / "run.sqlite").read_bytes()
-        process = self.start("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--frames", 10**6,
-                             *trace("perfetto", "sqlite"), cwd=self.folder)
-        wait_until(lambda: len(os.listdir(self.folder)) > 4)
-        process.kill()
-        process.communicate()
-        self.assertFalse((self.folder / "run.perfetto").exists())
-        self.assertEqual((self.folder / "run.sqlite").read_bytes(), earlier)
-        self.traced(*trace("perfetto", "sqlite"))  # removes what the killed run has left
-        self.is_in(self.folder, "left.pgm", "right.pgm", "run.perfetto", "run.sqlite")
 
     def test_of_a_window_have_only_the_rows_of_its_frames(self):
         for window, frames in (("frame=1", [(1,)]), ("frame=2,rows=0..0", [(2,)]), ("cycles=0..0", [(0,)]),
@@ -162,20 +136,6 @@ class Refusals(TraceTest):
             ([*base, "--trace", f"sqlite:{self.folder}/none/a"], "none/a': there is no such folder"),
             ([*base, "--trace", f"perfetto:{self.folder}"], f"'{self.folder}': is no file"),
         ])
-
-    def test_keep_files_that_are_no_traces(self):
-        text = self.file("notes.md", "what I found")
-        for form in ("perfetto", "sqlite", "vcd"):
-            process = run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace", f"{form}:{text}",
-                          "--trace-window",
-                          "frame=0")
-            self.refused_in_one_line(process, "notes.md': exists, and is not known as a ",
-                                     "of stereotlm, which alone")
-        self.assertEqual(text.read_text(), "what I found")
-        self.traced(*trace("sqlite"))
-        self.refused_in_one_line(run("run", "fpl2003", *SMALL, *PRELOADED, *TIMING, "--trace",
-                                     "perfetto:run.sqlite",
-                                     cwd=self.folder), "is not known as a Perfetto trace of stereotlm")
 
     def test_keep_inputs_and_results(self):
         self.refused_in_one_line(self.run_small("--trace", f"perfetto:{self.left}"),

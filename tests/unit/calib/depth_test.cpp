@@ -44,17 +44,6 @@ TEST(DepthInTheMiddle, IsThatOfABoardsDisparityOrInfinite) {
   EXPECT_FALSE(depth_in_the_middle(calibration, -10));
 }
 
-TEST(DepthMillimetres, IsRoundedAndZeroWithoutDepth) {
-  kernels::GrayImage disparity(4, 2, 255);
-  disparity.at(0, 0) = 40;
-  disparity.at(1, 0) = 3;    // 13333.33
-  disparity.at(2, 0) = 7;    // 5714.29
-  disparity.at(3, 0) = 0;    // infinity
-  disparity.at(1, 1) = 254;  // 157.48
-  const std::vector<std::uint16_t> expected = {1000, 13333, 5714, 0, 0, 157, 0, 0};
-  EXPECT_EQ(depth_millimetres(geometry(0), disparity), expected);
-}
-
 TEST(DepthMillimetres, IsZeroAbove65535) {
   DepthGeometry far = geometry(0);
   far.q(2, 3) = 65535.4 / 80;

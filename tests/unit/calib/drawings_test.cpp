@@ -112,15 +112,6 @@ TEST(Drawings, AreThoseOfPairsWithAGridAndOfTheTables) {
   EXPECT_EQ(names, (std::vector<std::string>{"corners_07.png", "displacement.png", "rectified_07.png"}));
 }
 
-TEST(CornersDrawing, ShowsBothPicturesUnderTheNamesOfTheirFiles) {
-  const cv::Mat3b drawing = Drawn().picture("corners_07.png");
-  EXPECT_EQ(drawing.size(), cv::Size(3 * kMargin + 2 * kWidth, kTop + kHeight + kMargin));
-  EXPECT_TRUE(is(drawing, {kMargin, kTop}, cv::Vec3b(90, 90, 90)));
-  EXPECT_TRUE(is(drawing, {kRight + kWidth - 1, kTop + kHeight - 1}, cv::Vec3b(180, 180, 180)));
-  EXPECT_LT(count(drawing({kMargin, 0, kWidth, kTop}), kWhite), kWidth * kTop);
-  EXPECT_EQ(count(drawing({kRight, 0, kWidth, kTop}), kWhite), kWidth * kTop);  // without a name
-}
-
 TEST(CornersDrawing, JoinsTheCornersOfBothSidesAndMarksTheFirst) {
   const cv::Mat3b drawing = Drawn().picture("corners_07.png");
   for (const int left : {kMargin, kRight}) {
@@ -147,20 +138,6 @@ TEST(CornersDrawing, CrossesOutCornersThatAreLeftOut) {
     EXPECT_GT(cv::countNonZero(any(around + picture)), 20);
   EXPECT_EQ(cv::countNonZero(any), cv::countNonZero(any(around + cv::Point(kMargin, kTop))) +
                                        cv::countNonZero(any(around + cv::Point(kRight, kTop))));
-}
-
-TEST(CornersDrawing, ShrinksALongNameAndCutsItOff) {
-  const auto inked = [](const std::string& name) {
-    Drawn drawn;
-    drawn.request.pictures[7].left_name = name;
-    const cv::Mat3b drawing = drawn.picture("corners_07.png");
-    EXPECT_EQ(count(drawing({kMargin + kWidth, 0, kMargin + kWidth, kTop}), kWhite),
-              (kMargin + kWidth) * kTop);
-    return kWidth * kTop - count(drawing({kMargin, 0, kWidth, kTop}), kWhite);
-  };
-  EXPECT_EQ(inked(std::string(300, 'm')), inked(std::string(200, 'm')));
-  EXPECT_EQ(inked("a\xc3\xa4"), inked("a??"));
-  EXPECT_EQ(inked(""), 0);
 }
 
 TEST(RectifiedDrawing, HasLinesThroughTheSameRowsOfBothPictures) {
@@ -209,16 +186,13 @@ TEST(DisplacementDrawing, HasArrowsWithoutTheOffsetThatDoNotReachTheNext) {
   }
 }
 
-TEST(DisplacementDrawing, ShowsTablesThatMoveNothingOrHaveNoValidEntry) {
-  for (const RectificationTable& table : {kernels::identity_table(200, 80), shifted(200, 80, 10)}) {
-    const cv::Mat3b drawing = displacement(table, table);
-    EXPECT_TRUE(is(drawing, {kMargin, kTop}, viridis(0)));
-    EXPECT_FALSE(is(drawing, {kMargin + 20, kTop + 20}, viridis(0))) << "a dot";
-    EXPECT_FALSE(is(drawing, {kMargin + 26, kTop + 20}, kWhite));
+TEST(DisplacementDrawing, ShowsTablesOfAnySizeWhatTheyMoveAndWithoutAnyEntry) {
+  for (const int height : {1, 600}) {
+    const RectificationTable table = kernels::identity_table(4, height);
+    EXPECT_NO_THROW(displacement(table, table));
   }
   const RectificationTable empty{4, 1, std::vector<std::uint32_t>(4)};
-  const cv::Mat3b of_empty = displacement(empty, empty);
-  EXPECT_EQ(count(of_empty({kMargin, kTop, 4, 1}), kMissing), 4);
+  EXPECT_EQ(count(displacement(empty, empty)({kMargin, kTop, 4, 1}), kMissing), 4);
 }
 
 TEST(DepthColors, AreBrightForNearAndGreyForUnknownWithTheScaleBelow) {
@@ -238,20 +212,7 @@ TEST(DepthColors, AreBrightForNearAndGreyForUnknownWithTheScaleBelow) {
   const cv::Mat below = drawing({0, 3, kColumns, 28});
   for (const int level : {0, 128, 255}) EXPECT_GT(count(below, viridis(level)), 0);
   EXPECT_GT(count(below, {0, 0, 0}), 20) << "the text";
-}
-
-TEST(DepthColors, ShowPicturesWithoutAnyDepthAndNarrowOnes) {
-  const cv::Mat3b drawing = decoded(encode_depth_color_png(2, 2, {0, 0, 0, 0}));
-  EXPECT_EQ(count(drawing({0, 0, 2, 2}), kMissing), 4);
-  EXPECT_GE(drawing.cols, 300);
-  EXPECT_EQ(count(drawing({2, 0, drawing.cols - 2, 2}), kWhite), 2 * (drawing.cols - 2));
-}
-
-TEST(DisplacementDrawing, ShowsTablesOfAnySize) {
-  for (const int height : {1, 600}) {
-    const RectificationTable table = kernels::identity_table(4, height);
-    EXPECT_NO_THROW(displacement(table, table));
-  }
+  EXPECT_EQ(count(decoded(encode_depth_color_png(2, 2, {0, 0, 0, 0}))({0, 0, 2, 2}), kMissing), 4);
 }
 
 }  // namespace

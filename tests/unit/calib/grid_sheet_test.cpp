@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <regex>
 #include <set>
 #include <string>
@@ -17,10 +16,6 @@ namespace {
 using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The numbers of `pattern` at each of its places.
 std::vector<std::vector<double>> numbers_of(const std::string& text, const std::string& pattern) {
@@ -43,22 +38,6 @@ std::vector<double> page_of(const std::string& svg) {
 // The left, the top, and the three lengths that draw each square, in millimetres.
 std::vector<std::vector<double>> squares_of(const std::string& svg) {
   return numbers_of(svg, R"(M([\d.]+) ([\d.]+)h([\d.]+)v([\d.]+)h-([\d.]+)z)");
-}
-
-TEST(GridShape, HasNoProblemsWithinItsRanges) {
-  EXPECT_THAT(problems(GridShape{3, 100, 1}), IsEmpty());
-  EXPECT_THAT(problems(GridShape{100, 3, 1000}), IsEmpty());
-}
-
-TEST(GridShape, NamesEveryFieldOutsideItsRange) {
-  EXPECT_THAT(problems(GridShape{2, 101, 0.5}),
-              ElementsAre("columns = 2: must be 3..100 inner corners",
-                          "rows = 101: must be 3..100 inner corners", "square_mm = 0.5: must be 1..1000"));
-  EXPECT_THAT(problems(GridShape{101, 2, 1000.5}),
-              ElementsAre("columns = 101: must be 3..100 inner corners",
-                          "rows = 2: must be 3..100 inner corners", "square_mm = 1000.5: must be 1..1000"));
-  EXPECT_THAT(problems(GridShape{9, 6, kNan}), ElementsAre("square_mm = nan: must be 1..1000"));
-  EXPECT_THAT(problems(GridShape{9, 6, kInfinity}), ElementsAre("square_mm = inf: must be 1..1000"));
 }
 
 // A page leaves 10 mm for the small print.

@@ -23,7 +23,6 @@ class FakeMachine : public host::HostBus {
  public:
   explicit FakeMachine(std::uint64_t memory_bytes = 1U << 16U) : memory_(memory_bytes) {}
 
-  std::uint64_t core_starts = 0;
   std::optional<std::uint64_t> failing_capture;    // loses words
   std::optional<std::uint64_t> diverging_capture;  // its sides take different frames
   bool failing_write = false;                      // the board refuses one that was posted
@@ -52,7 +51,6 @@ class FakeMachine : public host::HostBus {
       write_bridge(address - map_.bridge_registers, value);
     } else if (address == core_register(fpga::registers::kControl) &&
                (value & fpga::registers::kControlStart) != 0) {
-      ++core_starts;
       under_way_.push_back(kCore);
     }
   }

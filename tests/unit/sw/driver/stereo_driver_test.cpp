@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "DMA channel 1 has met an error", 0}),
     [](const auto& tested) { return tested.param.name; });
 
-// Calls back before each wait and each write of the driver.
+// Calls back before each wait of the driver.
 class WatchedMachine : public FakeMachine {
  public:
   using FakeMachine::FakeMachine;
@@ -94,12 +94,7 @@ class WatchedMachine : public FakeMachine {
     on_wait();
     FakeMachine::wait_for_interrupt();
   }
-  void write(std::uint64_t address, std::uint32_t value) override {
-    on_write();
-    FakeMachine::write(address, value);
-  }
   std::function<void()> on_wait = [] {};
-  std::function<void()> on_write = [] {};
 };
 
 TEST(StereoDriver, NamesTheWorkThatItWaitsFor) {
@@ -157,26 +152,6 @@ TEST(StereoDriver, SaysWhatEachOfItsStartsHasWaitedFor) {
               testing::IsSupersetOf({"capture 3: capture 2 (capture) copy 0 (ring)",
                                      "copy 2: copy 1 (copy) capture 2 (pair) frame 0 (input_buffer)",
                                      "frame 3: frame 2 (core) copy 3 (pair) read-back 0 (output_buffer)"}));
-}
-
-// It delivers the frames that the core has begun, and no others.
-TEST(StereoDriver, CanBeToldToStartNoMoreDuringAnyAccess) {
-  for (int moment = 20; moment < 120; ++moment) {
-    SCOPED_TRACE(moment);
-    Listener listener;
-    WatchedMachine machine;
-    StereoDriver driver(small(2, 2), 1'000'000, &kLeftTable, &kRightTable, std::ref(listener));
-    std::uint64_t started = 0;
-    int writes = 0;
-    machine.on_write = [&] {
-      if (++writes != moment) return;
-      started = driver.frames_started();
-      driver.start_no_more();
-    };
-    driver.run(machine);
-    EXPECT_EQ(machine.core_starts, started);
-    EXPECT_EQ(listener.frames.size(), started);
-  }
 }
 
 TEST(StereoDriver, UsesJustTheHostMemoryThatItAnnounces) {

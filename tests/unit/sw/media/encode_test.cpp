@@ -6,7 +6,6 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string>
 
 #include "calib/png.h"
 #include "models/kernels/words.h"
@@ -51,15 +50,6 @@ TEST(EncodeDisparityColorPng, SpreadsTurboOverTheDisparities) {
   const kernels::GrayImage invalid(1, 1, kernels::kInvalidDisparity);
   EXPECT_EQ(cv::imdecode(encode_disparity_color_png(invalid, 80), cv::IMREAD_UNCHANGED).at<cv::Vec3b>(0),
             cv::Vec3b(0, 0, 0));
-}
-
-TEST(EncodePfm, HasRowsBottomToTopAndInfinityForInvalid) {
-  kernels::GrayImage disparity(2, 2);
-  disparity.pixels = {0, 1, kernels::kInvalidDisparity, 79};
-  const auto bytes = encode_pfm(disparity);
-  const std::string expected(
-      "Pf\n2 2\n-1.0\n\x00\x00\x80\x7F\x00\x00\x9E\x42\x00\x00\x00\x00\x00\x00\x80\x3F", 28);
-  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), expected);
 }
 
 }  // namespace

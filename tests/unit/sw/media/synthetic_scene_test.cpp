@@ -121,17 +121,6 @@ TEST(SyntheticScene, DiffersFromSeedToSeed) {
   EXPECT_THAT(sums, SizeIs(100));
 }
 
-TEST(SyntheticScene, IsNeverFlat) {
-  const GrayImage left = SyntheticScene(1, 320, 240, 40).frame(0).left;
-  for (int y = 0; y + 4 <= 240; y += 4) {
-    for (int x = 0; x + 4 <= 320; x += 4) {
-      std::set<int> levels;
-      for (int i = 0; i < 16; ++i) levels.insert(left.at(x + i % 4, y + i / 4));
-      EXPECT_GT(levels.size(), 4U) << x << ' ' << y;
-    }
-  }
-}
-
 TEST(SyntheticScene, RefusesSizesThatNoBoardHas) {
   for (const auto& [width, height, disparities] : {std::array{66, 48, 16},
                                                    {0, 48, 16},

@@ -205,19 +205,6 @@ TEST_F(VideoTest, RefusesADamagedOrTruncatedVideoWhereFFmpegReportsIt) {
               StartsWith("'[matroska,webm] File ended prematurely': a video must decode without errors"));
 }
 
-TEST_F(VideoTest, LeavesOutTheFrameInWhichAnAviIsCut) {
-  const std::string whole = test::read_file(written("m.avi", "MJPG", 10));
-  const auto expected = open_video(path("m.avi"));
-  test::write_file(path("cut.avi"), whole.substr(0, whole.size() / 2));
-  const auto video = open_video(path("cut.avi"));
-  EXPECT_LT(video->frames(), 6U);
-  EXPECT_GT(video->frames(), 2U);
-  EXPECT_EQ(video->stated_frames(), 10U);
-  for (std::uint64_t frame = 0; frame < video->frames(); ++frame) {
-    EXPECT_EQ(video->frame(frame), expected->frame(frame));
-  }
-}
-
 TEST_F(VideoTest, ReportsAFrameThatHasDisappeared) {
   const std::string file = written("m.avi", "MJPG", 10);
   const auto video = open_video(file);

@@ -1,6 +1,5 @@
 #include "sw/report/conflicts_text.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,41 +15,6 @@
 
 namespace stereotlm::report {
 namespace {
-
-// A frame of two strips of two rows on a board of 8x3 pixels with two banks.
-fpga::FrameConflicts frame() {
-  fpga::FrameConflicts frame;
-  frame.banks = 2;
-  const fpga::Requesters requesters{fpga::CorePorts(1)};
-  const std::vector<std::uint64_t> stalls(requesters.size());
-  frame.strips = {{10, stalls, {}}, {200, stalls, {}}, {100, stalls, {}}};
-  frame.strips[1].stalls[0] = 50;
-  frame.strips[1].stalls[requesters.host(fpga::HostTraffic::kReadBack)] = 7;
-  frame.accesses.resize(6);
-  frame.accesses[2] = {150, 0, 0, 0};
-  frame.accesses[3] = {0, 1, 2, 3};
-  return frame;
-}
-
-platform::BoardConfig board(int width = 8, int height = 3) {
-  return platform::load_board(
-      "fpl2003", {fmt::format("image={{width: {}, height: {}}}", width, height), "matcher.rows=2",
-                  "ssram.banks={a: {}, b: {}}", "allocation.left_image=a", "allocation.right_image=a",
-                  "allocation.disparity=a", "allocation.left_lut=b", "allocation.right_lut=b"});
-}
-
-TEST(ConflictsText, SumsFramesAndShowsTheBanksThatAreUsed) {
-  fpga::FrameConflicts sums;
-  for (int i = 0; i < 2; ++i) add_frame(frame(), sums);
-  const platform::Conflicts none(board());
-  EXPECT_EQ(conflicts_text(conflicts_document(board(), none.recorder(), sums)),
-            "core         0 cycles in 0 frames\n"
-            "waits        none\n"
-            "rows              waits %  bank a %  bank b %\n"
-            "fill                 0.00      0.00      0.00\n"
-            "0..1                28.50     75.00      3.00\n"
-            "2..2                 0.00      0.00      0.00\n");
-}
 
 using Parts = std::array<std::uint64_t, 8>;
 
@@ -90,7 +54,10 @@ class MadeConflicts {
   }
 
  private:
-  platform::BoardConfig board_ = board(32, 15);
+  platform::BoardConfig board_ = platform::load_board(
+      "fpl2003", {"image={width: 32, height: 15}", "matcher.rows=2", "ssram.banks={a: {}, b: {}}",
+                  "allocation.left_image=a", "allocation.right_image=a", "allocation.disparity=a",
+                  "allocation.left_lut=b", "allocation.right_lut=b"});
   platform::Conflicts conflicts_;
   fpga::FrameConflicts sums_;
 };

@@ -57,15 +57,6 @@ TEST(DiffVerdict, TakesNoDifferenceWithinTheUncertaintyForAGain) {
   EXPECT_THAT(verdict(20, 0), StartsWith("A and B are equally fast, 20.000 frames/s, steady; "));
 }
 
-TEST(SettingsTable, ListsTheValuesThatDiffer) {
-  EXPECT_EQ(settings({integer("a", 1)}, {integer("a", 1)}), "");
-  EXPECT_EQ(
-      words(settings(
-          {{"name", std::string("x")}, integer("same", 1), integer("image.width", 640), integer("load", 5)},
-          {{"name", std::string("y")}, integer("same", 1), integer("image.width", 320), {"new", 2.5}})),
-      "board A B\nname x y\nimage.width 640 320\nload 5 -\nnew - 2.5\n");
-}
-
 TEST(SettingsTable, GivesAValueThatDoesNotFitItsColumnLinesOfItsOwn) {
   const std::string value(200, 'k');
   EXPECT_THAT(settings({{"filter", value}}, {{"filter", std::string("none")}}),
@@ -83,15 +74,6 @@ TEST(SettingsTable, CountsTheSettingsBeyondTheMost) {
   const std::string table = settings(a, {});
   EXPECT_EQ(lines_of(table), kMostSettings + 2);
   EXPECT_THAT(table, EndsWith("\n  1 more\n"));
-}
-
-TEST(FramesTable, GroupsFramesWithTheSameCycles) {
-  EXPECT_EQ(words(frames_table({10, 10, 10, 12, 10}, {20, 10, 20, 11, 10, 99})),
-            "cycles of a frame A B difference\n"
-            "each of 2 frames, the first is 0 10 20 +10\n"
-            "each of 2 frames, the first is 1 10 10 0\n"
-            "frame 3 12 11 -1\n");
-  EXPECT_EQ(frames_table({10, 11}, {10, 11, 12}), "");
 }
 
 TEST(FramesTable, ShowsTheFramesThatCostOrGainMost) {
@@ -121,28 +103,10 @@ TEST(FramesTable, WeighsALineByTheSumOfItsFrames) {
   EXPECT_THAT(table, EndsWith("\n1 more lines, in all +2\n"));
 }
 
-TEST(FramesTable, KeepsFramesWhoseDifferencesCancel) {
-  EXPECT_EQ(words(frames_table({1000, 1100}, {1100, 1000})),
-            "cycles of a frame A B difference\nframe 0 1000 1100 +100\nframe 1 1100 1000 -100\n");
-}
-
 fpga::RowProfile rows_of(const std::vector<std::uint64_t>& ends, std::uint64_t stalls) {
   fpga::RowProfile rows;
   for (const std::uint64_t end : ends) rows.push_back({end, {0, 0, 0, 0, stalls}});
   return rows;
-}
-
-TEST(RowsTable, ShowsTheFirstRowThatDiffersAndTheCostOfEachRange) {
-  stats::RowComparison rows;
-  EXPECT_EQ(rows_table(rows), "");
-  rows.add(rows_of({10, 20, 30, 40}, 0), rows_of({10, 25, 40, 48}, 3));
-  EXPECT_EQ(words(rows_table(rows)),
-            "they part in frame 0, row 1: whole after 20 cycles in A, 25 in B\n"
-            "waiting cycles of\n"
-            "rows difference each row left_lut right_lut left_pixel right_pixel result\n"
-            "0 0 0 0 0 0 0 +3\n"
-            "1..2 +10 +5 0 0 0 0 0\n"
-            "3 -2 -2 0 0 0 0 0\n");
 }
 
 TEST(RowsTable, ShowsRowsOfWhichOnlyTheStallsDiffer) {
@@ -158,20 +122,6 @@ TEST(RowsTable, ShowsRowsOfWhichOnlyTheStallsDiffer) {
   EXPECT_THAT(words(table), EndsWith("\n1 0 0 0 0 0 0 +4\n"));
   rows.add(stalled, rows_of({10, 20}, 0));
   EXPECT_EQ(rows_table(rows), head) << "one frame gains the cycles that another one loses";
-}
-
-TEST(BlameTable, IsSortedByTheDifference) {
-  const std::vector<platform::BlameRow> a = {{"left_lut", "bank0", "host", 10},
-                                             {"result", "bank1", "host", 5}};
-  const std::vector<platform::BlameRow> b = {{"left_lut", "bank0", "host", 15},
-                                             {"result", "bank1", "host", 5},
-                                             {"result", "bank1", "turnaround", 90}};
-  EXPECT_EQ(words(blame_table(differing_waits(a, b))),
-            "waits, cycles A B difference\n"
-            "result on bank1 for the turnaround 0 90 +90\n"
-            "left_lut on bank0 for host 10 15 +5\n");
-  EXPECT_THAT(blame_table(differing_waits(b, a)), HasSubstr("-90\n"));
-  EXPECT_EQ(blame_table(differing_waits(a, a)), "");
 }
 
 }  // namespace

@@ -38,13 +38,5 @@ TEST_F(ResultFolderTest, TakesOnlyFilesThatARunWrites) {
     EXPECT_THROW(folder.add(name, "x"), std::invalid_argument) << name;
 }
 
-TEST_F(ResultFolderTest, NumbersFramesWithSixDigitsOrMore) {
-  EXPECT_EQ(frame_file_name(0), "frames/000000.png");
-  EXPECT_EQ(frame_file_name(1'000'000), "frames/1000000.png");
-  files::OutputFolder folder(out_, result_content());
-  folder.add(frame_file_name(999'999), "x");
-  folder.add(frame_file_name(1'000'000), "x");
-}
-
 }  // namespace
 }  // namespace stereotlm::runs

@@ -57,47 +57,11 @@ platform::BoardConfig clocks(double fpga_mhz, double pci_mhz, double local_mhz, 
   return board;
 }
 
-TEST(ConsoleTable, ShowsTheCoreAndTheComputerAroundIt) {
-  const std::string core =
-      "core          39331.500 frames/s   1017 cycles a frame, 2 frames\n"
-      "core bound     40000.000 frames/s   limited by left_pixel\n";
-  const std::string banks =
-      "bank                  reads         writes  busy %      MB/s peak MB/s\n"
-      "bank0                  1500              0   75.00    120.00    160.00\n"
-      "bank1                     0             20    1.00      1.60    160.00\n"
-      "waits        mostly left_pixel on bank1 for the turnaround: 250 cycles (12.50 %)\n";
-  EXPECT_EQ(console_table(two_banks(), {}), core + banks);
-  EXPECT_EQ(
-      console_table(in_a_computer(), clocks(40, 30, 40)),
-      core +
-          "steady           17.980 ± 0.250 frames/s   over 12 frames, with 80 pixels lost\n"
-          "from power-up    17.500 frames/s, with 80 pixels lost\n"
-          "steady bound     29.970 frames/s of whole pictures   limited by camera\n" +
-          banks +
-          "pci master     transactions          words  data %      MB/s peak MB/s mean wait us\n"
-          "host                     10             20    0.20      0.24    120.00        0.000\n"
-          "left_capture            100           3000   30.00     36.00    120.00        1.111\n"
-          "pci bus      busy 25.00 % of its clocks\n"
-          "local bus    busy 25.00 % of its clocks, 32.00 of 160.00 MB/s: 3000 words posted, 1000 by DMA\n"
-          "camera          frames  captured  dropped:   not armed      busy   partner  dropped pixels\n"
-          "left                10         6         4           3         1         0              80\n"
-          "right               10         6         4           2         1         1               0\n"
-          "latency      capture to host, ms: min 77.500, p50 80.000, p95 90.250, p99 99.000, max 100.000\n");
-}
-
 TEST(ConsoleTable, ShowsTheRatesOfAPciBusOf64Bits) {
   const std::string text = console_table(in_a_computer(), clocks(40, 30, 40, 64));
   EXPECT_THAT(
       text, HasSubstr("left_capture            100           3000   15.00     36.00    240.00        1.111\n"
                       "pci bus      busy 25.00 % of its clocks\n"));
-}
-
-TEST(ConsoleTable, KeepsTheColumnsUnderALongName) {
-  platform::Statistics statistics = in_a_computer();
-  statistics.computer->pci_masters.push_back({"right_capture", 100, 3000, 3333});
-  const std::string text = console_table(statistics, clocks(40, 30, 40));
-  EXPECT_THAT(text, HasSubstr("\npci master      transactions          words  data %"));
-  EXPECT_THAT(text, HasSubstr("\nright_capture            100           3000   30.00"));
 }
 
 TEST(ConsoleTable, ShowsTheAccuracyIfThereIsGroundTruth) {
@@ -108,33 +72,6 @@ TEST(ConsoleTable, ShowsTheAccuracyIfThereIsGroundTruth) {
       console_table(two_banks(), {}, {std::nullopt, std::nullopt, Accuracy{std::nullopt, std::nullopt, 0}}),
       HasSubstr("\naccuracy     off by more than 1: n/a, by more than 2: n/a, answered: 0.00 %\n"));
   EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("accuracy")));
-}
-
-TEST(ConsoleTable, ShowsNoSteadyRateOfFewFramesAndNoWaitWhereNoPortWaits) {
-  platform::Statistics statistics = in_a_computer();
-  statistics.frames_per_second.steady.reset();
-  statistics.blame.clear();
-  const std::string text = console_table(statistics, clocks(62.5, 33, 40));
-  EXPECT_THAT(text, HasSubstr("\nfrom power-up    17.500 frames/s, with 80 pixels lost; too few frames for a "
-                              "steady rate\n"));
-  EXPECT_THAT(text, HasSubstr("\nwaits        none\n"));
-  EXPECT_THAT(text, HasSubstr("    120.00    250.00\n")) << "the peak follows from the clock";
-}
-
-TEST(ConsoleTable, ShowsWhatAllWaitsCostOfTheRateWithoutWaits) {
-  EXPECT_THAT(
-      console_table(two_banks(), {}, {39500, std::nullopt, std::nullopt}),
-      HasSubstr("\nwaits cost      168.500 frames/s   of 39500.000, which the core reaches without waits\n"));
-  platform::Statistics one_wait = two_banks();
-  one_wait.blame = {{"left_lut", "bank0", "left_pixel", 40}};
-  EXPECT_THAT(console_table(one_wait, {}),
-              HasSubstr("\nwaits        left_lut on bank0 for left_pixel: 40 cycles (2.00 %)\n"));
-}
-
-TEST(ConsoleTable, ShowsHowManyPixelsHaveADisparity) {
-  EXPECT_THAT(console_table(two_banks(), {}, {std::nullopt, 81.504, std::nullopt}),
-              HasSubstr("\ndisparities  in 81.50 % of the pixels of the last frame\n"));
-  EXPECT_THAT(console_table(two_banks(), {}), Not(HasSubstr("disparities")));
 }
 
 TEST(ConsoleTable, SaysWhereARateIsAboveItsBound) {

@@ -4,15 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <iterator>
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "sw/files/whole_file.h"
-#include "tests/support/file_size_limit.h"
 #include "tests/support/scratch_folder.h"
 
 namespace stereotlm::stats {
@@ -33,29 +30,14 @@ RowProfile profile(const std::vector<std::uint64_t>& cycles) {
   return rows;
 }
 
-// "first..last: cycles, least..most, stalls of the port; " of each range
-std::string text_of(const std::vector<RowComparison::Range>& ranges, std::size_t port = 2) {
+// "first..last: cycles, least..most, stalls of the left pixel port; " of each range
+std::string text_of(const std::vector<RowComparison::Range>& ranges) {
   std::string text;
   for (const RowComparison::Range& range : ranges) {
     text += fmt::format("{}..{}: {}, {}..{}, {}; ", range.first_row, range.last_row, range.cycles,
-                        range.least, range.most, range.stalls[port]);
+                        range.least, range.most, range.stalls[2]);
   }
   return text;
-}
-
-TEST(RowComparison, NamesTheFirstRowThatEndsInAnotherCycle) {
-  RowComparison rows;
-  rows.add(profile({10, 20, 30}), profile({10, 20, 30}));
-  EXPECT_EQ(rows.frames(), 1U);
-  EXPECT_FALSE(rows.parting());
-  EXPECT_TRUE(rows.ranges(10).empty());
-  rows.add(profile({10, 20, 30}), profile({10, 21, 29}));
-  rows.add(profile({10, 20, 30}), profile({9, 20, 30}));
-  ASSERT_TRUE(rows.parting());
-  EXPECT_EQ(rows.parting()->frame, 1U);
-  EXPECT_EQ(rows.parting()->row, 1U);
-  EXPECT_EQ(rows.parting()->cycles_a, 30U);
-  EXPECT_EQ(rows.parting()->cycles_b, 31U);
 }
 
 TEST(RowComparison, JoinsNeighbouringRowsThatCostTheSame) {
@@ -70,38 +52,6 @@ TEST(RowComparison, JoinsRowsToBandsWhereTheRangesAreTooMany) {
   EXPECT_EQ(text_of(rows.ranges(4)),
             "0..0: 10, 10..10, 1; 4..4: 30, 30..30, 3; 5..5: 10, 10..10, 1; 6..6: -10, -10..-10, -1; ");
   EXPECT_EQ(text_of(rows.ranges(3)), "0..1: 10, 0..10, 1; 4..6: 30, -10..30, 3; ");
-}
-
-// Rows of 10 cycles with the given stalls of the left and of the right table port.
-RowProfile stalled(const std::vector<std::pair<std::uint64_t, std::uint64_t>>& stalls) {
-  RowProfile rows;
-  RowEnd end = {0, std::vector<std::uint64_t>(fpga::kCoreGroupCount)};
-  for (const auto& [left, right] : stalls) {
-    end.cycles += 10;
-    end.stalls[0] += left;
-    end.stalls[1] += right;
-    rows.push_back(end);
-  }
-  return rows;
-}
-
-TEST(RowComparison, KeepsRowsOfWhichOnlyTheStallsDiffer) {
-  RowComparison rows;
-  rows.add(stalled({{0, 0}, {4, 0}, {4, 0}, {4, 0}, {1, 1}}),
-           stalled({{0, 0}, {0, 4}, {0, 4}, {0, 5}, {1, 1}}));
-  EXPECT_FALSE(rows.parting());
-  ASSERT_TRUE(rows.other_stalls());
-  EXPECT_EQ(rows.other_stalls()->frame, 0U);
-  EXPECT_EQ(rows.other_stalls()->row, 1U);
-  EXPECT_EQ(text_of(rows.ranges(10), 0), "1..2: 0, 0..0, -8; 3..3: 0, 0..0, -4; ");
-  EXPECT_EQ(text_of(rows.ranges(10), 1), "1..2: 0, 0..0, 8; 3..3: 0, 0..0, 5; ");
-}
-
-TEST(RowComparison, JoinsRowsOfEqualCyclesWhereTheirStallsDifferTooOften) {
-  RowComparison rows;
-  rows.add(stalled({{0, 0}, {0, 0}, {0, 0}}), stalled({{1, 0}, {2, 0}, {3, 0}}));
-  EXPECT_EQ(text_of(rows.ranges(3), 0), "0..0: 0, 0..0, 1; 1..1: 0, 0..0, 2; 2..2: 0, 0..0, 3; ");
-  EXPECT_EQ(text_of(rows.ranges(2), 0), "0..2: 0, 0..0, 6; ");
 }
 
 TEST(RowComparison, KeepsRangesWhoseDifferencesCancel) {
@@ -151,10 +101,6 @@ constexpr const char* kHead =
     "a_right_pixel_stall_cycles,a_result_stall_cycles,b_left_lut_stall_cycles,b_right_lut_stall_cycles,"
     "b_left_pixel_stall_cycles,b_right_pixel_stall_cycles,b_result_stall_cycles\n";
 
-std::ptrdiff_t files_in(const test::ScratchFolder& folder) {
-  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
-}
-
 TEST(RowsCsv, HasALineForEachFrameAndRow) {
   const test::ScratchFolder folder;
   const auto path = folder.path() / "rows.csv";
@@ -169,7 +115,6 @@ TEST(RowsCsv, HasALineForEachFrameAndRow) {
                                               "0,1,15,15,0,0,0,0,1,0,7,0,0,0\n"
                                               "1,0,9,9,0,0,0,0,0,0,0,0,0,0\n"
                                               "1,1,9,9,0,0,0,0,0,0,0,0,0,0\n");
-  EXPECT_EQ(files_in(folder), 1);
 }
 
 // Two runs may have different numbers of lanes.
@@ -180,26 +125,6 @@ TEST(RowsCsv, AddsTheStallsOfTheLanesOfAPortGroup) {
   csv.add({{10, {1, 2, 3, 4, 5}}}, {{11, {1, 2, 10, 20, 100, 200, 1000, 2000, 5}}});
   csv.commit();
   EXPECT_EQ(files::read_whole_file(path), std::string(kHead) + "0,0,10,11,1,2,3,4,5,3,30,300,3000,5\n");
-}
-
-TEST(RowsCsv, NamesTheFileThatCannotBeWritten) {
-  const test::ScratchFolder folder;
-  const auto path = folder.path() / "rows.csv";
-  const std::string refusal = "'" + path.string() + "': cannot be written: ";
-  {
-    const std::string full = refusal + "File too large";
-    const test::FileSizeLimit limit(1000);
-    RowsCsv csv(path);
-    csv.add(profile(std::vector<std::uint64_t>(100)), profile(std::vector<std::uint64_t>(100)));
-    EXPECT_EQ(test::message_of([&] { csv.commit(); }), full);
-  }
-  EXPECT_EQ(files_in(folder), 0);
-  {
-    RowsCsv csv(path);
-    std::filesystem::create_directory(path);
-    EXPECT_EQ(test::message_of([&] { csv.commit(); }), "'" + path.string() + "': is no file");
-  }
-  EXPECT_EQ(files_in(folder), 1);
 }
 
 }  // namespace

@@ -75,17 +75,6 @@ TEST_F(SqliteSinkTest, ALastStripWithFewerRowsIsARunOfItsOwn) {
   }
 }
 
-TEST_F(SqliteSinkTest, BurstsLevelsAndEventsAreThere) {
-  const test::MadeTrace trace = test::make_trace(board_, 1);
-  write(trace);
-  EXPECT_EQ(number("SELECT count(*) FROM bursts WHERE bus = 'pci'"), 2);
-  EXPECT_EQ(number("SELECT words FROM bursts WHERE bus = 'local' AND master = 'posted'"), 16);
-  EXPECT_EQ(number("SELECT sum(words) FROM levels WHERE queue = 'posted'"), 48);
-  EXPECT_EQ(number("SELECT count(*) FROM events"), 5);
-  EXPECT_EQ(number("SELECT count(*) FROM events WHERE frame IS NULL AND why = 'not_armed'"), 1);
-  EXPECT_EQ(number("SELECT end_ps FROM events WHERE kind = 'capture'"), 1'500'500);
-}
-
 TEST_F(SqliteSinkTest, TheFileIsSoundAndItsSchemaHasAComment) {
   write(test::make_trace(board_, 1));
   const Database database(path_, Database::Access::kRead);
