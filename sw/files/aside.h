@@ -35,14 +35,10 @@ class NewFile {
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
-  void write(std::string_view bytes) {
-    buffer_.append(bytes);
-    if (buffer_.size() >= kBufferBytes) flush();
-  }
+  void write(std::string_view bytes);
   void close();  // makes the file durable; no write() may follow
 
  private:
-  static constexpr std::size_t kBufferBytes = std::size_t{1} << 18U;
   void flush();
 
   std::filesystem::path path_;
@@ -70,7 +66,7 @@ class Aside {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  bool try_lock();
+  int try_lock();
   void remove_if_empty() noexcept;
 
   std::filesystem::path path_;

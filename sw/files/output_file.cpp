@@ -22,12 +22,9 @@ namespace fs = std::filesystem;
 constexpr const char* kUnfinished = "new";  // in the hidden folder
 
 void take_owner_and_mode(const fs::path& made, const struct stat& earlier) {
-  constexpr mode_t kPermissions = 07777;
-  const bool is_owner_kept = chown(made.c_str(), earlier.st_uid, earlier.st_gid) == 0;
-  const bool is_group_kept =
-      is_owner_kept || chown(made.c_str(), static_cast<uid_t>(-1), earlier.st_gid) == 0;
-  mode_t mode = earlier.st_mode & kPermissions;
-  if (!is_owner_kept) mode &= ~static_cast<mode_t>(S_ISUID | S_ISGID);
+  mode_t mode = earlier.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO);
+  const bool is_group_kept = chown(made.c_str(), earlier.st_uid, earlier.st_gid) == 0 ||
+                             chown(made.c_str(), static_cast<uid_t>(-1), earlier.st_gid) == 0;
   // The group of this process gets the permissions of all other users.
   if (!is_group_kept) mode = (mode & ~static_cast<mode_t>(S_IRWXG)) | (mode & S_IRWXO) << 3U;
   if (chmod(made.c_str(), mode) != 0) fail(errno, made);
@@ -81,15 +78,12 @@ std::optional<std::string> result_folder_problem(const fs::path& path) {
 }
 
 fs::path linked_file(const fs::path& path) {
-  constexpr int kMostLinks = 40;  // the system's limit
-  fs::path file = path;
   std::error_code error;
-  for (int links = 0; fs::is_symlink(fs::symlink_status(file, error)); ++links) {
-    if (links == kMostLinks) fail(ELOOP, path);
-    file = file.parent_path() / fs::read_symlink(file);
-  }
+  static_cast<void>(fs::status(path, error));  // finds links that lead round in a circle
   if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
     fail(error.value(), path);
+  fs::path file = path;
+  while (fs::is_symlink(fs::symlink_status(file, error))) file = file.parent_path() / fs::read_symlink(file);
   return file;
 }
 
@@ -161,7 +155,8 @@ void OutputFile::begin() {
   if (aside_) return;
   named([this] {
     aside_.emplace(aside_of(path_), [](const fs::path& entry) {
-      if (entry.stem() != kUnfinished || !is_file(entry)) fail(EEXIST, entry);
+      const std::string name = entry.filename();  // "new", "new-journal"
+      if (name.rfind(kUnfinished, 0) != 0 || !is_file(entry)) fail(EEXIST, entry);
     });
     for (const fs::path& name : entries(aside_->path())) fs::remove(aside_->path() / name);
     new_.emplace(aside_->path() / kUnfinished);

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProbe = "probe";
-
 bool is_no_folder(fs::file_type type) {
   return type != fs::file_type::not_found && type != fs::file_type::directory;
 }
@@ -43,15 +41,20 @@ OutputFolder::OutputFolder(const fs::path& dir, OutputContent content)
     if (at_dir == fs::file_type::symlink ? !fs::is_directory(dir_) : is_no_folder(at_dir))
       refuse("not a folder");
     if (is_no_folder(fs::symlink_status(aside()).type()))
-      refuse(fmt::format("holds '{}', which is no folder", content_.aside));
-    aside_.emplace(aside(), [this](const fs::path& entry) { check_left(entry); });
+      refuse(fmt::format("holds '{}', which is no folder", aside().filename().string()));
+    aside_.emplace(aside(), [this](const fs::path& entry) {
+      if (entry != made() && entry != complete() && entry != earlier()) {
+        refuse(fmt::format("holds '{}', which no killed run has left there",
+                           entry.lexically_relative(dir_).string()));
+      }
+    });
     repair();
     check_earlier();
     check_inputs();
     for (const fs::path& name : entries(aside())) fs::remove_all(aside() / name);
+    write_whole_file(made(), "can this folder be written to?");
+    fs::remove(made());
     fs::create_directory(made());
-    write_whole_file(aside() / kProbe, "can this folder be written to?");
-    fs::remove(aside() / kProbe);
   });
 }
 
@@ -63,8 +66,7 @@ bool OutputFolder::is_ours(const std::string& name) const {
          });
 }
 
-// Returns the name of a file in `entry` that the command has not written; nullopt if there is none. The entry
-// is in DIR or in the folder of unfinished files.
+// Returns the name of a file in `entry`, of DIR, that the command has not written; nullopt if there is none.
 std::optional<std::string> OutputFolder::foreign_part(const fs::path& entry) const {
   const std::string name = entry.filename();
   if (!is_folder(entry)) return is_file(entry) && is_ours(name) ? std::nullopt : std::optional(name);
@@ -76,39 +78,22 @@ std::optional<std::string> OutputFolder::foreign_part(const fs::path& entry) con
   return std::nullopt;
 }
 
-// Refuses an entry of the folder of unfinished files that no killed run has left there.
-void OutputFolder::check_left(const fs::path& entry) const {
-  if (entry.filename() == kProbe && is_file(entry)) return;
-  std::optional<fs::path> foreign;
-  const bool is_known = entry == made() || entry == complete() || entry == earlier();
-  if (!is_known || !is_folder(entry)) foreign = entry.filename();
-  for (const fs::path& name : foreign ? std::vector<fs::path>() : entries(entry)) {
-    if (const auto part = foreign_part(entry / name)) foreign = entry.filename() / *part;
-  }
-  if (foreign) {
-    refuse(
-        fmt::format("holds '{}', which no killed run has left there", (content_.aside / *foreign).string()));
-  }
-}
-
 void OutputFolder::check_earlier() {
   const auto is_own = [this](const fs::path& file) { return is_file(file) && content_.kind.is_own(file); };
-  const bool has_mark = !content_.mark.empty() && is_own(dir_ / content_.mark);
+  const bool has_mark = content_.mark.empty() || is_own(dir_ / content_.mark);
   for (const fs::path& name : entries(dir_)) {
-    if (name == content_.aside || name == content_.kept) continue;
+    if (name == aside().filename()) continue;
     const bool is_known = is_ours(name) || is_ours(name.string() + '/');
     if (!is_known && content_.others_stay) continue;
     auto found = foreign_part(dir_ / name);
     if (!found && content_.mark.empty() && !is_own(dir_ / name)) found = name;
     if (found) refuse(fmt::format("holds '{}': {}", *found, content_.rule));
-    if (!content_.mark.empty() && !has_mark) {
+    if (!has_mark) {
       refuse(fmt::format("holds '{}' but no {} that is a {}: {}", name.string(), content_.mark,
                          content_.kind.called, content_.rule));
     }
-    replaced_.push_back(name);
+    replaced_.insert(name == content_.mark ? replaced_.begin() : replaced_.end(), name);
   }
-  std::stable_partition(replaced_.begin(), replaced_.end(),
-                        [this](const fs::path& name) { return name == content_.mark; });
 }
 
 void OutputFolder::check_inputs() const {
@@ -118,7 +103,7 @@ void OutputFolder::check_inputs() const {
     const fs::path inside = fs::canonical(input.path, missing).lexically_relative(dir);
     if (missing || inside.empty() || *inside.begin() == "..") continue;
     const fs::path entry = *inside.begin();
-    if (entry == content_.aside || std::count(replaced_.begin(), replaced_.end(), entry) > 0)
+    if (entry == aside().filename() || std::count(replaced_.begin(), replaced_.end(), entry) > 0)
       refuse(fmt::format("{} lies in it and would be replaced: an input must lie elsewhere", input.text()));
   }
 }

@@ -25,13 +25,11 @@ struct OutputContent {
   std::vector<std::string> names;
   std::string prefix = {};
   bool others_stay = false;            // DIR may hold other files too, which stay
-  std::string kept = {};               // an entry of DIR that stays, although the command may write it
-  std::string aside = ".partial";      // name of the folder of unfinished files, in DIR
   std::vector<NamedFile> inputs = {};  // files that the command reads
 };
 
 // The output folder of a command. commit() replaces its files all together. New files are written to
-// DIR/.partial (inside DIR, so that DIR may be a mount point).
+// DIR/PREFIX.partial (inside DIR, so that DIR may be a mount point).
 class OutputFolder {
  public:
   // Makes DIR and its missing parents. Completes or undoes the commit of a killed run. Throws
@@ -53,13 +51,12 @@ class OutputFolder {
 
  private:
   using Path = std::filesystem::path;
-  Path aside() const { return dir_ / content_.aside; }
+  Path aside() const { return dir_ / (content_.prefix + ".partial"); }
   Path made() const { return aside() / "new"; }
   Path complete() const { return aside() / "complete"; }
   Path earlier() const { return aside() / "earlier"; }
   bool is_ours(const std::string& name) const;
   std::optional<std::string> foreign_part(const Path& entry) const;
-  void check_left(const Path& entry) const;
   void check_earlier();
   void check_inputs() const;
   NewFile& new_file(const std::string& name);

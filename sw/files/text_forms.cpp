@@ -11,32 +11,25 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 namespace stereotlm::files {
 namespace {
 
-class Sha256 {
- public:
-  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-    check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-  }
-  void add(const void* bytes, std::size_t count) {
-    check(EVP_DigestUpdate(context_.get(), bytes, count) == 1);
-  }
-  std::string hex() {
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned size = 0;
-    check(EVP_DigestFinal_ex(context_.get(), digest, &size) == 1);
-    return fmt::format("{:02x}", fmt::join(digest, digest + size, ""));
-  }
-
- private:
-  static void check(bool done) {
-    if (!done) throw std::runtime_error("SHA-256: the OpenSSL library refuses to compute it");
-  }
-
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
-};
+// The SHA-256 of the pieces that `next` returns, until an empty one.
+template <typename Next>
+std::string sha256_of(const Next& next) {
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  bool is_done = context != nullptr && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+  for (std::string_view piece = next(); is_done && !piece.empty(); piece = next())
+    is_done = EVP_DigestUpdate(context.get(), piece.data(), piece.size()) == 1;
+  unsigned char digest[EVP_MAX_MD_SIZE];
+  unsigned size = 0;
+  if (!is_done || EVP_DigestFinal_ex(context.get(), digest, &size) != 1)
+    throw std::runtime_error("SHA-256: the OpenSSL library refuses to compute it");
+  return fmt::format("{:02x}", fmt::join(digest, digest + size, ""));
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -79,20 +72,22 @@ void append(std::string& text, const Json& value, std::size_t depth, bool replac
 }  // namespace
 
 std::string sha256_hex(const void* bytes, std::size_t count) {
-  Sha256 sum;
-  sum.add(bytes, count);
-  return sum.hex();
+  std::string_view rest(static_cast<const char*>(bytes), count);
+  return sha256_of([&rest] { return std::exchange(rest, {}); });
 }
 
 std::string sha256_file(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  Sha256 sum;
-  unsigned char buffer[1 << 16];
-  std::size_t count = 0;
-  while (file && (count = std::fread(buffer, 1, sizeof buffer, file.get())) > 0) sum.add(buffer, count);
-  if (!file || std::ferror(file.get()) != 0)
+  char buffer[1 << 16];
+  const auto refuse = [&path] {
     throw std::runtime_error(fmt::format("'{}': cannot be read: {}", path, std::strerror(errno)));
-  return sum.hex();
+  };
+  if (!file) refuse();
+  return sha256_of([&] {
+    const std::size_t count = std::fread(buffer, 1, sizeof buffer, file.get());
+    if (std::ferror(file.get()) != 0) refuse();
+    return std::string_view(buffer, count);
+  });
 }
 
 std::string base64(const void* bytes, std::size_t size) {

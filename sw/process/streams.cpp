@@ -75,4 +75,16 @@ void prepare_streams() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+void catch_interrupts() {
+  struct sigaction action = {};
+  action.sa_handler = [](int /*signal*/) { caught_interrupt = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction earlier = {};
+    sigaction(signal, nullptr, &earlier);
+    if (earlier.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
 }  // namespace stereotlm::process

@@ -46,16 +46,13 @@ std::string digits_with(std::string number, int places) {
 
 // The Feistel network of shuffled_number(), for numbers of 2 * half_bits bits.
 std::uint64_t permuted(std::uint64_t number, unsigned half_bits, std::uint64_t seed) {
-  constexpr std::uint64_t kRounds = 6;
+  constexpr int kRounds = 6;
   const std::uint64_t mask = (std::uint64_t{1} << half_bits) - 1;
+  calib::SplitMix keys(seed);
   std::uint64_t left = number >> half_bits;
   std::uint64_t right = number & mask;
-  for (std::uint64_t round = 0; round < kRounds; ++round) {
-    const std::uint64_t key = calib::mixed(seed + (round + 1) * calib::kSplitMixStep);
-    const std::uint64_t next = left ^ (calib::mixed(right ^ key) & mask);
-    left = right;
-    right = next;
-  }
+  for (int round = 0; round < kRounds; ++round)
+    left = std::exchange(right, left ^ (calib::mixed(right ^ keys.next()) & mask));
   return left << half_bits | right;
 }
 
@@ -151,14 +148,13 @@ class PlanReader {
       report(error.place, error.what());
       fail();
     }
-    if (const Entries* sections = read_map(
-            "", tree, {"board", "run", "set", "vary", "zip", "where", "sample"}, "a plan is a map")) {
-      read_base(*sections, tree);
-      if (const YamlNode* vary = find(*sections, "vary")) read_vary(*vary);
-      if (const YamlNode* zip = find(*sections, "zip")) read_zip(*zip);
-      if (const YamlNode* where = find(*sections, "where")) read_conditions(*where);
+    if (is_map("", tree, {"board", "run", "set", "vary", "zip", "where", "sample"}, "a plan is a map")) {
+      read_base(tree);
+      if (const auto* vary = tree.find("vary")) read_vary(vary->value);
+      if (const auto* zip = tree.find("zip")) read_zip(zip->value);
+      if (const auto* where = tree.find("where")) read_conditions(where->value);
       count_points();
-      if (const YamlNode* sample = find(*sections, "sample")) read_sample(*sample);
+      if (const auto* sample = tree.find("sample")) read_sample(sample->value);
     }
     if (findings_.empty()) check_first_point();
     if (findings_.empty()) compute_conditions();
@@ -168,8 +164,6 @@ class PlanReader {
   }
 
  private:
-  using Entries = std::vector<YamlNode::Entry>;
-
   [[noreturn]] void fail() const {
     throw platform::BoardError(
         findings_, plan_.product_ > 1
@@ -188,14 +182,14 @@ class PlanReader {
     findings_.insert(findings_.end(), found.begin(), found.end());
   }
 
-  // The entries of a map. Reports repeated entries, and entries whose keys are not among `known`; without
-  // known keys all keys are allowed. If the value is not a map, reports it with `rule` and returns null.
-  const Entries* read_map(const std::string& path, const YamlNode& node,
-                          const std::vector<std::string>& known, const std::string& rule) {
+  // Whether a value is a map; if it is not, reports it with `rule`. Reports repeated keys, and keys that are
+  // not among `known`; without known keys all keys are allowed.
+  bool is_map(const std::string& path, const YamlNode& node, const std::vector<std::string>& known,
+              const std::string& rule) {
     if (!node.is_map()) {
       report(path.empty() ? "the plan" : path, node,
              known.empty() ? rule : fmt::format("{} of {}", rule, fmt::join(known, ", ")));
-      return nullptr;
+      return false;
     }
     std::map<std::string, Place> first;
     for (const YamlNode::Entry& entry : node.entries) {
@@ -210,19 +204,13 @@ class PlanReader {
                                             short_text(entry.value), at->second.line, at->second.column));
       }
     }
-    return &node.entries;
+    return true;
   }
 
-  static const YamlNode* find(const Entries& entries, const std::string& name) {
-    for (const YamlNode::Entry& entry : entries) {
-      if (entry.key.text == name) return &entry.value;
-    }
-    return nullptr;
-  }
-
-  void read_base(const Entries& sections, const YamlNode& tree) {
-    if (const YamlNode* run = find(sections, "run")) read_run(*run);
-    const YamlNode* const board = find(sections, "board");
+  void read_base(const YamlNode& tree) {
+    if (const auto* run = tree.find("run")) read_run(run->value);
+    const auto* const named = tree.find("board");
+    const YamlNode* const board = named == nullptr ? nullptr : &named->value;
     const bool is_option = !plan_.board_.empty();
     if (board == nullptr && !is_option)
       return report(tree.place, "board: missing: a preset, or the path of a board file");
@@ -246,10 +234,9 @@ class PlanReader {
     auto base = plan_.base_->read_with_problems();
     add(base.problems);
     if (!base.problems.empty()) return plan_.base_.reset();
-    if (const YamlNode* set = find(sections, "set")) {
-      const Entries* const entries = read_map("set", *set, {}, "a map of keys of the board and their values");
-      if (entries == nullptr) return;
-      for (const YamlNode::Entry& entry : *entries) {
+    if (const auto* set = tree.find("set")) {
+      if (!is_map("set", set->value, {}, "a map of keys of the board and their values")) return;
+      for (const YamlNode::Entry& entry : set->value.entries) {
         take_path("set", entry.key);
         plan_.base_->replace(entry.key.text, entry.value, plan_.path_);
         take_banks(entry.key, {entry.value});
@@ -263,9 +250,8 @@ class PlanReader {
   }
 
   void read_run(const YamlNode& node) {
-    const Entries* const entries = read_map("run", node, {"source", "frames", "calibration"}, "a map");
-    if (entries == nullptr) return;
-    for (const YamlNode::Entry& entry : *entries) {
+    if (!is_map("run", node, {"source", "frames", "calibration"}, "a map")) return;
+    for (const YamlNode::Entry& entry : node.entries) {
       const std::string path = "run." + entry.key.text;
       if (const std::string rule = run_key_problem(path, entry.value); !rule.empty()) {
         report(path, entry.value, rule);
@@ -329,37 +315,33 @@ class PlanReader {
   }
 
   void read_vary(const YamlNode& node) {
-    const Entries* const entries =
-        read_map("vary", node, {}, "a map of keys of the board and lists or ranges of their values");
-    if (entries == nullptr) return;
-    for (const YamlNode::Entry& entry : *entries) {
-      if (!take_path("vary", entry.key)) continue;
-      if (auto values = values_of("vary", entry))
-        plan_.axes_.push_back({{entry.key.text}, {std::move(*values)}});
-    }
+    if (!is_map("vary", node, {}, "a map of keys of the board and lists or ranges of their values")) return;
+    for (const YamlNode::Entry& entry : node.entries) add_axis("vary", {entry});
   }
 
   void read_zip(const YamlNode& node) {
     if (!node.is_list()) return report("zip", node, "a list of maps; the keys of a map move together");
     for (const YamlNode& group : node.items) {
-      const Entries* const entries = read_map("zip", group, {}, "a map of keys that move together");
-      if (entries == nullptr) continue;
-      Plan::Axis axis;
-      for (const YamlNode::Entry& entry : *entries) {
-        if (!take_path("zip", entry.key)) continue;
-        auto values = values_of("zip", entry);
-        if (!values) continue;
-        if (!axis.values.empty() && values->size() != axis.size()) {
-          report(entry.value.place,
-                 fmt::format("zip: {}: {} values; must be as many as {} has, {}", entry.key.text,
-                             values->size(), axis.paths.front(), axis.size()));
-          continue;
-        }
-        axis.paths.push_back(entry.key.text);
-        axis.values.push_back(std::move(*values));
-      }
-      if (!axis.values.empty()) plan_.axes_.push_back(std::move(axis));
+      if (is_map("zip", group, {}, "a map of keys that move together")) add_axis("zip", group.entries);
     }
+  }
+
+  void add_axis(const std::string& section, const std::vector<YamlNode::Entry>& entries) {
+    Plan::Axis axis;
+    for (const YamlNode::Entry& entry : entries) {
+      if (!take_path(section, entry.key)) continue;
+      auto values = values_of(section, entry);
+      if (!values) continue;
+      if (!axis.values.empty() && values->size() != axis.size()) {
+        report(entry.value.place,
+               fmt::format("{}: {}: {} values; must be as many as {} has, {}", section, entry.key.text,
+                           values->size(), axis.paths.front(), axis.size()));
+        continue;
+      }
+      axis.paths.push_back(entry.key.text);
+      axis.values.push_back(std::move(*values));
+    }
+    if (!axis.values.empty()) plan_.axes_.push_back(std::move(axis));
   }
 
   // Reads the values of a key that varies, and reports each value that is wrong by itself. (A value that is
@@ -389,28 +371,26 @@ class PlanReader {
   // returns nullopt. `name` is the name of the range in messages.
   std::optional<PlanValues> read_range(const std::string& name, const YamlNode& node) {
     constexpr std::array kKeys = {"from", "to", "step"};
-    if (read_map(name, node, {kKeys.begin(), kKeys.end()}, "a range") == nullptr) return std::nullopt;
+    if (!is_map(name, node, {kKeys.begin(), kKeys.end()}, "a range")) return std::nullopt;
     const std::string rule = fmt::format("a decimal number of at most {} digits", kMostDigits);
     int places = 0;
-    for (const char* const key : kKeys) {
-      const YamlNode::Entry* const entry = node.find(key);
+    for (const YamlNode::Entry& entry : node.entries) places = std::max(places, places_of(entry.value.text));
+    std::array<std::int64_t, kKeys.size()> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const std::string key = fmt::format("{}.{}", name, kKeys[i]);
+      const YamlNode::Entry* const entry = node.find(kKeys[i]);
       if (entry == nullptr) {
-        report(node.place, fmt::format("{}.{}: missing: {}", name, key, rule));
+        report(node.place, fmt::format("{}: missing: {}", key, rule));
         return std::nullopt;
       }
       const std::string& text = entry->value.text;
       if (!platform::decimal_of(entry->value) || digits_with(text, places_of(text)).size() > kMostDigits) {
-        report(fmt::format("{}.{}", name, key), entry->value, rule);
+        report(key, entry->value, rule);
         return std::nullopt;
       }
-      places = std::max(places, places_of(text));
-    }
-    std::array<std::int64_t, kKeys.size()> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const YamlNode& value = node.find(kKeys[i])->value;
-      const std::string digits = digits_with(value.text, places);
+      const std::string digits = digits_with(text, places);
       if (digits.size() > kMostRangeDigits) {
-        report(fmt::format("{}.{}", name, kKeys[i]), value,
+        report(key, entry->value,
                fmt::format("at most {} digits, with the {} decimal places that the range has",
                            kMostRangeDigits, places));
         return std::nullopt;
@@ -522,16 +502,15 @@ class PlanReader {
   }
 
   void read_sample(const YamlNode& node) {
-    const Entries* const entries = read_map("sample", node, {"points", "seed"}, "a map");
-    if (entries == nullptr) return;
+    if (!is_map("sample", node, {"points", "seed"}, "a map")) return;
     const std::size_t before = findings_.size();
     const auto read = [&](const std::string& name, const platform::IntegerRule& rule) {
-      const YamlNode* const value = find(*entries, name);
-      const std::int64_t number = value == nullptr ? -1 : platform::integer_of(*value).value_or(-1);
-      if (value == nullptr) {
+      const YamlNode::Entry* const entry = node.find(name);
+      const std::int64_t number = entry == nullptr ? -1 : platform::integer_of(entry->value).value_or(-1);
+      if (entry == nullptr) {
         report(node.place, fmt::format("sample.{}: missing: {}", name, rule.text()));
       } else if (!rule.allows(number)) {
-        report("sample." + name, *value, rule.text());
+        report("sample." + name, entry->value, rule.text());
       }
       return static_cast<std::uint64_t>(number);
     };

@@ -88,8 +88,8 @@ class Plan {
   };
   Combination combination(std::uint64_t number) const;
   // The reason for which a board cannot have the tables of the calibration: its image size, a side without a
-  // buffer for a table, or tables that cannot be joined. A reason is ignored if it depends on keys at or
-  // below a path for which `is_checked` is false. Nullopt without a reason or without a calibration.
+  // buffer for a table, or tables that cannot be joined. Leaves out reasons that depend on keys for which
+  // `is_checked` is false. Nullopt without a reason or without a calibration.
   std::optional<std::string> table_problem(const platform::BoardConfig& board,
                                            const std::function<bool(const char*)>& is_checked) const;
 

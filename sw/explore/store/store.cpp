@@ -43,33 +43,21 @@ std::string listed(const Names& columns, const std::string& table = "") {
   return names;
 }
 
-Names with_first(const Names& further) {
-  Names columns(kFirstColumns.begin(), kFirstColumns.end());
-  columns.insert(columns.end(), further.begin(), further.end());
-  return columns;
-}
-
-Names without_first(Names columns) {
-  const auto is_first = [](const std::string& column) {
-    return std::find(kFirstColumns.begin(), kFirstColumns.end(), column) != kFirstColumns.end();
-  };
-  columns.erase(std::remove_if(columns.begin(), columns.end(), is_first), columns.end());
-  return columns;
-}
-
-// Creates table `points` in an empty database. `schema`: the name under which it is attached.
-void create_points(sqlite::Database& database, const Names& further_columns,
-                   const std::string& schema = "main") {
-  std::string columns =
+// Creates table `points` in an empty database: with kFirstColumns, then the others of these columns.
+// `schema`: the name under which the database is attached.
+void create_points(sqlite::Database& database, const Names& columns, const std::string& schema = "main") {
+  std::string text =
       "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
       "version TEXT NOT NULL, config TEXT NOT NULL";
-  if (!further_columns.empty()) columns += ", " + listed(further_columns);
-  database.execute(fmt::format("CREATE TABLE {}.points({})", schema, columns));
+  for (const std::string& column : columns) {
+    if (std::count(kFirstColumns.begin(), kFirstColumns.end(), column) == 0)
+      text += ", " + sqlite::quoted_name(column);
+  }
+  database.execute(fmt::format("CREATE TABLE {}.points({})", schema, text));
 }
 
-void create_tables(sqlite::Database& database, const Names& further_columns,
-                   const std::string& schema = "main") {
-  create_points(database, further_columns, schema);
+void create_tables(sqlite::Database& database, const Names& columns, const std::string& schema = "main") {
+  create_points(database, columns, schema);
   database.execute(fmt::format(
       "PRAGMA {0}.application_id = {1}; PRAGMA {0}.user_version = {2};"
       "CREATE TABLE {0}.blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
@@ -118,15 +106,6 @@ void append(const std::string& path, const Json& value, std::vector<platform::Bo
 // Waits until no other process writes. SQLite itself does not wait before it changes the kind of its journal.
 void wait_for_writers(sqlite::Database& database) { database.execute("BEGIN IMMEDIATE; COMMIT"); }
 
-// The values of a point, except those of kFirstColumns.
-std::vector<const platform::BoardValue*> further_values(const StoredPoint& point) {
-  std::vector<const platform::BoardValue*> values;
-  for (const auto* part : {&point.keys, &point.figures.values}) {
-    for (const platform::BoardValue& value : *part) values.push_back(&value);
-  }
-  return values;
-}
-
 // The offset of the byte that is locked, far behind the bytes that SQLite itself locks.
 constexpr off_t kPlace = off_t{1} << 61;
 constexpr std::chrono::milliseconds kBetweenTries{20};
@@ -165,14 +144,14 @@ struct Inputs {
     }
   }
 
-  // The columns without kFirstColumns. Numbers inside names compare as numbers: bank2 comes before bank10.
-  Names further_columns() const {
+  // Numbers inside names compare as numbers: bank2 comes before bank10.
+  Names sorted_columns() const {
     Names names;
     for (const auto& [name, path] : columns) names.push_back(name);
     std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
       return strverscmp(a.c_str(), b.c_str()) < 0;
     });
-    return without_first(names);
+    return names;
   }
 };
 
@@ -285,9 +264,8 @@ Store::Store(const std::string& path, const std::string& version, std::chrono::m
     : database_(path, sqlite::Database::Access::kCreate, busy_timeout), version_(version) {
   create();
   check_version(database_, version);
-  find_ = std::make_unique<sqlite::Statement>(database_, "SELECT 1 FROM points WHERE hash = ?");
-  insert_blame_ = std::make_unique<sqlite::Statement>(
-      database_, fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns));
+  find_.emplace(database_, "SELECT 1 FROM points WHERE hash = ?");
+  insert_blame_.emplace(database_, fmt::format("INSERT INTO blame({}) VALUES(?, ?, ?, ?, ?)", kBlameColumns));
 }
 
 // The first process to open the file creates the tables.
@@ -336,14 +314,17 @@ bool Store::has(const std::string& hash) {
 }
 
 bool Store::add(const StoredPoint& point) {
-  const std::vector<const platform::BoardValue*> values = further_values(point);
+  std::vector<platform::BoardValue> values = point.keys;
+  values.insert(values.end(), point.figures.values.begin(), point.figures.values.end());
+  Names columns(kFirstColumns.begin(), kFirstColumns.end());
+  for (const platform::BoardValue& value : values) columns.push_back(value.path);
   database_.execute("BEGIN IMMEDIATE");
   try {
-    sqlite::Statement& insert = insertion(point, values);
+    sqlite::Statement& insert = insertion(point, columns);
     int place = 0;
     for (const std::string& text : {point.hash, point.status, point.reason, version_, point.config})
       insert.bind(++place, text);
-    for (const platform::BoardValue* value : values) insert.bind(++place, value->value);
+    for (const platform::BoardValue& value : values) insert.bind(++place, value.value);
     insert.run();
     const bool is_new = sqlite3_changes(database_.handle()) > 0;
     for (const platform::BlameRow& row : point.figures.blame) {
@@ -364,24 +345,14 @@ bool Store::add(const StoredPoint& point) {
   }
 }
 
-sqlite::Statement& Store::insertion(const StoredPoint& point,
-                                    const std::vector<const platform::BoardValue*>& values) {
-  const auto known =
-      std::find_if(insertions_.begin(), insertions_.end(), [&values](const Insertion& insertion) {
-        return std::equal(
-            values.begin(), values.end(), insertion.paths.begin(), insertion.paths.end(),
-            [](const platform::BoardValue* value, const std::string& path) { return value->path == path; });
-      });
-  if (known != insertions_.end()) return *known->statement;
+// The statement that inserts a point with these columns. Adds those that the table lacks.
+sqlite::Statement& Store::insertion(const StoredPoint& point, const Names& columns) {
+  const auto known = insertions_.find(columns);
+  if (known != insertions_.end()) return known->second;
   add_columns(point);
-  Insertion made;
-  for (const platform::BoardValue* value : values) made.paths.push_back(value->path);
-  const Names columns = with_first(made.paths);
-  made.statement = std::make_unique<sqlite::Statement>(
-      database_, fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", listed(columns),
-                             fmt::join(Names(columns.size(), "?"), ", ")));
-  insertions_.push_back(std::move(made));
-  return *insertions_.back().statement;
+  const std::string sql = fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", listed(columns),
+                                      fmt::join(Names(columns.size(), "?"), ", "));
+  return insertions_.try_emplace(columns, database_, sql).first->second;
 }
 
 void Store::add_columns(const StoredPoint& point) {
@@ -399,7 +370,7 @@ void Store::add_columns(const StoredPoint& point) {
   // instead, with all columns at once.
   if (database_.number("SELECT EXISTS(SELECT 1 FROM points)") == 0) {
     database_.execute("DROP TABLE points");
-    create_points(database_, without_first({columns_.begin(), columns_.end()}));
+    create_points(database_, {columns_.begin(), columns_.end()});
     return;
   }
   for (const std::string& column : missing)
@@ -475,7 +446,7 @@ StoreLock::StoreLock(const std::string& store, std::chrono::milliseconds busy_ti
       throw sqlite::DatabaseError(
           store + ": another process is at work on it: wait for its end, or give another file");
   }
-  const std::string remove_empty = "[ -s \"$1\" ] || /bin/rm -f -- \"$1\" \"$1-journal\"";
+  const std::string remove_empty = "[ -s \"$1\" ] || ! is_ours \"$1\" || /bin/rm -f -- \"$1\" \"$1-journal\"";
   if (!is_made_) return;
   try {
     remover_.emplace(remove_empty, Names{fs::absolute(path_)}, file_);
@@ -504,8 +475,7 @@ void merge_stores(const Names& inputs, const std::string& store,
   if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
   Inputs all;
   for (const std::string& path : inputs) all.add(path);
-  const Names further = all.further_columns();
-  const Names columns = with_first(further);
+  const Names columns = all.sorted_columns();
   using namespace std::string_literals;
   const auto kind =
       files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
@@ -523,11 +493,11 @@ void merge_stores(const Names& inputs, const std::string& store,
     } else {
       database.execute("ATTACH '' AS gathered");  // SQLite removes the file of this database itself
       database.execute("PRAGMA gathered.journal_mode = OFF; PRAGMA gathered.synchronous = OFF");
-      create_tables(database, further, "gathered");
+      create_tables(database, columns, "gathered");
       gather(inputs, database, columns);
     }
     database.execute("BEGIN");
-    create_tables(database, further);
+    create_tables(database, columns);
     for (const std::string& key : all.keys) insert_board_key(database, key);
     // In an order in which the bytes depend only on the points.
     database.execute(

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -77,22 +76,15 @@ class Store {
  private:
   void create();
   void read_columns();
-  // A prepared INSERT for points that have these columns behind kFirstColumns.
-  struct Insertion {
-    std::vector<std::string> paths;
-    std::unique_ptr<sqlite::Statement> statement;
-  };
-  // The insertion for a point with these values. Adds the columns that the table lacks.
-  sqlite::Statement& insertion(const StoredPoint& point,
-                               const std::vector<const platform::BoardValue*>& values);
+  sqlite::Statement& insertion(const StoredPoint& point, const std::vector<std::string>& columns);
   void add_columns(const StoredPoint& point);
 
   sqlite::Database database_;
   std::string version_;
   std::set<std::string> columns_;
-  std::unique_ptr<sqlite::Statement> find_;
-  std::unique_ptr<sqlite::Statement> insert_blame_;
-  std::vector<Insertion> insertions_;
+  std::optional<sqlite::Statement> find_;
+  std::optional<sqlite::Statement> insert_blame_;
+  std::map<std::vector<std::string>, sqlite::Statement> insertions_;  // [columns]
 };
 
 // The columns of table `points`, in their order. Throws DatabaseError if the file is not a store, or has

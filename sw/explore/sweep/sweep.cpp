@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "sw/process/child.h"
@@ -41,6 +43,16 @@ Figures beside_keys(Figures figures, const std::vector<platform::BoardValue>& ke
   }
   return figures;
 }
+
+constexpr std::array<std::pair<const char*, std::uint64_t SweepCounts::*>, 7> kCounts = {{
+    {"total", &SweepCounts::total},
+    {"excluded", &SweepCounts::excluded},
+    {"known", &SweepCounts::known},
+    {"ok", &SweepCounts::ok},
+    {"impossible", &SweepCounts::impossible},
+    {"failed", &SweepCounts::failed},
+    {"given_up", &SweepCounts::given_up},
+}};
 
 // The way in which a point has ended: an index in kCounts.
 enum class PointEnd : std::uint8_t { kExcluded = 1, kKnown, kOk, kImpossible, kFailed, kGivenUp };

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -9,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
@@ -32,16 +30,6 @@ struct SweepCounts {
   std::uint64_t done() const { return excluded + known + ok + impossible + failed + given_up; }
   void add(const SweepCounts& other);
 };
-
-inline constexpr std::array<std::pair<const char*, std::uint64_t SweepCounts::*>, 7> kCounts = {{
-    {"total", &SweepCounts::total},
-    {"excluded", &SweepCounts::excluded},
-    {"known", &SweepCounts::known},
-    {"ok", &SweepCounts::ok},
-    {"impossible", &SweepCounts::impossible},
-    {"failed", &SweepCounts::failed},
-    {"given_up", &SweepCounts::given_up},
-}};
 
 // One line for each number, such as "ok 12".
 std::string counts_text(const SweepCounts& counts);
@@ -73,14 +61,13 @@ struct SweepOptions {
 inline constexpr int kMostDeaths = 3;
 
 // Simulates all points that the stores do not have. `keep_going` is called several times a second with the
-// progress; after it has returned false no further point is begun, and those that do not end within a second
-// are given up. At the end merge_stores() gives the store
-// its final form, whose bytes depend only on its points. A point whose worker dies is begun again,
-// until it counts as failed after kMostDeaths deaths; the reason in its row then says how to try it again.
-// Throws DatabaseError, also if another sweep uses the store; StoreGone (store.h) once the file of the
-// store is gone; ConditionError (points.h) if a condition cannot be computed for a point;
-// std::runtime_error, also if the limit on open files is too low for the workers (see workers_with_files()).
-// Except after StoreGone, all finished points are in the store.
+// progress. After it has returned false, no further point is begun, and those that do not end within a second
+// are given up. At the end merge_stores() gives the store its final form, whose bytes depend only on its
+// points. A point whose worker dies is begun again. After kMostDeaths deaths it counts as failed, and the
+// reason in its row says how to try it again. Throws DatabaseError, also if another sweep uses the store;
+// StoreGone once the file of the store is gone; ConditionError if a condition cannot be computed for a point;
+// std::runtime_error, also if the limit on open files is too low for the workers. Except after StoreGone, all
+// finished points are in the store.
 SweepCounts sweep(const Points& points, const Evaluate& evaluate, const SweepOptions& options,
                   const std::function<bool(const SweepCounts& counts)>& keep_going);
 

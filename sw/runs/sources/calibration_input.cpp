@@ -73,15 +73,14 @@ files::OutputContent calibration_content(const RigFiles& files, bool makes_pictu
   content.rule =
       "only files that calibrate has made, with their calibration, are replaced: must be moved away";
   content.prefix = stem;
-  content.names = {"@(.yaml|_left.lut|_right.lut)",
-                   "_@(drawings|pictures)/",
+  content.names = {"@(.yaml|_left.lut|_right.lut)", "_drawings/",
                    "_drawings/@(corners|rectified)_+([0-9]).png",
-                   "_drawings/@(displacement|source_lines).png",  // the latter by earlier versions
-                   "_pictures/@(left|right)_+([0-9]).png",
-                   "_pictures/scene_@(left|right|truth).png"};
+                   "_drawings/@(displacement|source_lines).png"};  // the latter by earlier versions
+  if (makes_pictures) {
+    content.names.insert(content.names.end(), {"_pictures/", "_pictures/@(left|right)_+([0-9]).png",
+                                               "_pictures/scene_@(left|right|truth).png"});
+  }
   content.others_stay = true;
-  if (!makes_pictures) content.kept = files.pictures.filename();
-  content.aside = stem + ".partial";
   content.inputs = inputs;
   return content;
 }

@@ -3,7 +3,6 @@
 import os
 import re
 import resource
-import sqlite3
 import subprocess
 import sys
 
@@ -22,7 +21,6 @@ vary:
   matcher.disparities: {{from: 1, to: {POINTS}, step: 1}}
 """
 KEPT = "; finished points are kept"
-AT_WORK = "another process is at work on it: wait for its end, or give another file"
 
 
 class RobustnessTest(SweepTest):
@@ -45,12 +43,6 @@ class RobustnessTest(SweepTest):
         self.assertTrue(self.store.read_bytes() == expected, "the databases differ")
         self.is_in(self.disk, "points.db")
         return said
-
-    def lock(self, begin):
-        connection = sqlite3.connect(self.store, isolation_level=None)
-        self.addCleanup(connection.close)
-        connection.execute(begin)
-        return connection
 
 
 class FullDisk(RobustnessTest):

@@ -155,23 +155,23 @@ class OutputFaultsTest : public ::testing::Test {
     return failures > 0;
   }
 
-  // Makes attempts to write kNew with a fault at the first, second, .. call that changes the file system,
-  // until the fault is not reached. `attempt(steps)` returns whether it was. After each attempt and the
-  // beginning of another command, the files must be the earlier or the new ones, and writing must succeed.
-  template <typename Attempt>
-  void at_every_step(const Files& earlier, const Attempt& attempt) const {
+  // Makes attempts to write the fresh files with a fault at the first, second, .. call that changes the file
+  // system, until the fault is not reached. After each attempt and the beginning of another command, the
+  // files must be the earlier or the fresh ones, and writing must succeed.
+  void at_every_step(Fault kind, const Files& earlier, const Files& fresh) const {
+    const auto work = [&] { write(fresh); };
     int steps = 0;
     for (bool is_reached = true; is_reached; ++steps) {
       begin_with(earlier);
-      is_reached = attempt(steps);
+      is_reached = kind == Fault::kKill ? is_killed(kind, steps, work) : has_failed(kind, steps, work);
       begin();
       const Files found = files();
-      EXPECT_TRUE(found == earlier || found == kNew) << steps;
-      EXPECT_TRUE(is_reached || found == kNew);
-      write(kNew);
-      EXPECT_EQ(files(), kNew) << steps;
+      EXPECT_TRUE(found == earlier || found == fresh) << steps;
+      EXPECT_TRUE(is_reached || found == fresh);
+      write(fresh);
+      EXPECT_EQ(files(), fresh) << steps;
     }
-    EXPECT_GT(steps, 20);
+    EXPECT_GT(steps, 10);
   }
 
   test::ScratchFolder scratch_;
@@ -179,18 +179,20 @@ class OutputFaultsTest : public ::testing::Test {
   OutputContent content_;
 };
 
-TEST_F(OutputFaultsTest, AFolderIsAsItWasOrNewAfterAKillAnywhere) {
-  for (const Files& earlier : {kNone, kOld}) {
-    at_every_step(earlier,
-                  [this](int steps) { return is_killed(Fault::kKill, steps, [&] { write(kNew); }); });
+TEST_F(OutputFaultsTest, AFolderIsAsItWasOrNewAfterAKillOrAFailureAnywhere) {
+  for (const Fault kind : {Fault::kKill, Fault::kFailOnce, Fault::kFailFromThenOn}) {
+    for (const Files& earlier : {kNone, kOld}) at_every_step(kind, earlier, kNew);
   }
 }
 
-TEST_F(OutputFaultsTest, AFolderIsAsItWasOrNewAfterAFailureAnywhere) {
-  for (const Fault kind : {Fault::kFailOnce, Fault::kFailFromThenOn}) {
-    for (const Files& earlier : {kNone, kOld})
-      at_every_step(earlier, [&](int steps) { return has_failed(kind, steps, [&] { write(kNew); }); });
-  }
+// Such as the figures of `plot`.
+TEST_F(OutputFaultsTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFailureAnywhere) {
+  content_.mark = "";
+  content_.kind = {"figure", [](const fs::path&) { return true; }};
+  content_.names = {"*.csv", "*.png"};
+  for (const Fault kind : {Fault::kKill, Fault::kFailOnce})
+    at_every_step(kind, {{"a.csv", "old"}, {"a.png", "old"}, {"b.png", "old"}},
+                  {{"a.csv", "new"}, {"c.png", "new"}});
 }
 
 // Once all earlier files are moved away, the next run completes the commit; before, it undoes it.
@@ -209,28 +211,6 @@ TEST_F(OutputFaultsTest, AFolderIsAsItWasOrNewAfterItsRepairIsKilledAnywhere) {
       }
     }
     EXPECT_EQ(steps, moved_away + 1 + 3 + 1);  // all go well in the last one
-  }
-}
-
-// Such as the figures of `plot`.
-TEST_F(OutputFaultsTest, FilesWithoutAMarkAreAsTheyWereOrNewAfterAKillOrAFailureAnywhere) {
-  content_.mark = "";
-  content_.kind = {"figure", [](const fs::path&) { return true; }};
-  content_.names = {"*.csv", "*.png"};
-  const Files earlier = {{"a.csv", "old"}, {"a.png", "old"}, {"b.png", "old"}};
-  const Files fresh = {{"a.csv", "new"}, {"c.png", "new"}};
-  const auto write_all = [&] { write(fresh); };
-  for (const bool is_kill : {true, false}) {
-    int steps = 0;
-    for (bool is_reached = true; is_reached; ++steps) {
-      begin_with(earlier);
-      is_reached = is_kill ? is_killed(Fault::kKill, steps, write_all)
-                           : has_failed(Fault::kFailOnce, steps, write_all);
-      begin();
-      EXPECT_TRUE(files() == fresh || (is_reached && files() == earlier)) << steps;
-    }
-    EXPECT_EQ(files(), fresh);
-    EXPECT_GT(steps, 10);
   }
 }
 

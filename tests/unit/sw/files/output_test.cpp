@@ -59,9 +59,8 @@ class OutputTest : public testing::Test {
     content.mark = "doc";
     content.kind = kKind;
     content.rule = "must be moved away";
-    content.names = {"doc", "a.csv", "frames/", "frames/+([0-9]).png", "kept/", "kept/a"};
+    content.names = {"doc", "a.csv", "frames/", "frames/+([0-9]).png"};
     content.others_stay = others_stay;
-    content.kept = "kept";
     return content;
   }
   std::unique_ptr<OutputFolder> open(const OutputContent& described = content()) const {
@@ -184,23 +183,20 @@ TEST_F(OutputTest, AFolderIsReplacedIfItHasItsMarkAndNothingElse) {
   holds("a.csv");
   write_file(out_ / ".partial", "a file");
   holds(".partial", ", which is no folder");
-  for (const char* name : {".partial/mine", ".partial/new/mine", ".partial/new/frames/mine"}) {
-    write_file(out_ / name, "x");
-    holds(name, ", which no killed run has left there");
-  }
+  write_file(out_ / ".partial/mine", "x");
+  holds(".partial/mine", ", which no killed run has left there");
   EXPECT_NO_THROW(open());
 }
 
 TEST_F(OutputTest, OtherFilesInAFolderStay) {
   write_earlier();
   write_file(out_ / "run", "script");
-  write_file(out_ / "kept/note", "mine");
   const auto folder = open(content(true));
   add_all(*folder);
   write_file(out_ / "appeared", "mine");
   folder->commit();
   expect_new();
-  for (const char* name : {"run", "kept/note", "appeared"}) EXPECT_TRUE(fs::exists(out_ / name)) << name;
+  for (const char* name : {"run", "appeared"}) EXPECT_TRUE(fs::exists(out_ / name)) << name;
   EXPECT_FALSE(fs::exists(out_ / "frames/0.png"));
 }
 
@@ -265,10 +261,8 @@ TEST_F(OutputTest, AFileThatTheCommandUsesIsNotReplaced) {
     EXPECT_EQ(folder_refusal(described),
               "--left '" + path.string() + "' lies in it and would be replaced: an input must lie elsewhere");
   }
-  for (const char* other : {"other", "kept/a"}) {
-    described.inputs = {{"--left", write_file(out_ / other, "mine")}};
-    EXPECT_NO_THROW(open(described)) << other;
-  }
+  described.inputs = {{"--left", write_file(out_ / "other", "mine")}};
+  EXPECT_NO_THROW(open(described));
 }
 
 TEST_F(OutputTest, NothingIsWrittenIntoAResultFolder) {
@@ -317,7 +311,7 @@ TEST_F(OutputTest, OneProcessAtATimeWrites) {
   add_all(*folder);
   EXPECT_EQ(folder_refusal(), "in use by another run");
   OutputContent other = content();
-  other.aside = "other.partial";
+  other.prefix = "other";
   other.others_stay = true;
   EXPECT_NO_THROW(open(other));
   folder->commit();
@@ -345,7 +339,6 @@ TEST_F(OutputTest, NothingUnfinishedIsLeft) {
   }
   // What the end of the machine leaves is removed by the next command.
   write_file(out_ / ".partial/new/frames/1.png", "half");
-  write_file(out_ / ".partial/probe", "");
   write_file(scratch_.path() / ".file.writing/new", "half");
   add_all(*open());
   replace(path_, "own : new");

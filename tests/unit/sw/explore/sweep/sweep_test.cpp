@@ -170,20 +170,6 @@ TEST_F(SweepTest, GivesEachWorkerItsShareAtOnce) {
   EXPECT_EQ(sweep(Plan::load(file("eight.yaml")).points(), waits, options("a.db", 8), always).ok, 8U);
 }
 
-TEST_F(SweepTest, HandsOutNoPointsOnceItIsStopped) {
-  write_file(file("plan.yaml"),
-             "board: fpl2003\nvary: {fpga.clock_mhz: {from: 1, to: 999.999, step: 0.001}}\n");
-  const auto slow = [](const Point& point) {
-    std::this_thread::sleep_for(5ms);
-    return evaluate(point);
-  };
-  const SweepCounts counts = sweep(plan().points(), slow, options("a.db", 2),
-                                   [](const SweepCounts& now) { return now.done() == 0; });
-  EXPECT_EQ(counts.total, 999'000U);
-  EXPECT_GT(counts.done(), 0U);
-  EXPECT_LT(counts.done(), 1000U);
-}
-
 TEST_F(SweepTest, KeepsFinishedPointsWhenItIsKilled) {
   for (std::uint64_t attempt = 1; attempt <= 5; ++attempt) {
     const pid_t child = fork();
@@ -244,14 +230,6 @@ TEST_F(SweepTest, BeginsAPointAgainWhoseWorkerHasDiedUntilItHasDiedThreeTimes) {
         .execute("DELETE FROM points WHERE " + failed);
     expect_whole("a.db");
   }
-}
-
-TEST_F(SweepTest, RenamesAFigureThatHasThePathOfAKey) {
-  const auto same_path = [](const Point& /*point*/) -> Figures {
-    return {{{"image.width", std::int64_t{5}}}, {}};
-  };
-  sweep(point_of_fpl2003(), same_path, options("a.db"), always);
-  EXPECT_EQ(count("a.db", "\"image.width\" = 640 AND \"image.width.counted\" = 5"), 1U);
 }
 
 TEST_F(SweepTest, EndsIfTheMachineLacksSomething) {
