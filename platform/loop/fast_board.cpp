@@ -12,15 +12,21 @@
 #include "platform/config/buffer_layout.h"
 
 namespace stereotlm::platform {
+namespace {
+
+constexpr std::uint64_t kStallTimeoutCycles = std::uint64_t{1} << 26U;
+
+}  // namespace
+
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
-                     std::function<void(std::uint64_t)> ring, std::uint64_t stall_timeout_cycles)
+                     std::function<void(std::uint64_t)> ring)
     : DirectBanks(config.banks.size()),
       config_(core_config(require_valid(config))),
       bank_configs_(ssram_configs(config)),
       ring_(std::move(ring)),
       clock_(config_.clock_mhz),
       arbitration_(arbiter_of_ports(config.fpga.arbiter, core_ports(config)), bank_configs_),
-      frames_(config_, bank_configs_, arbitration_, stall_timeout_cycles),
+      frames_(config_, bank_configs_, arbitration_, kStallTimeoutCycles),
       local_bus_({config.bridge.local_clock_mhz, buffer_ranges(config)}, bank_configs_.size(), *this),
       fast_core_(config_, fpga::has_pixels(fidelity), frames_, host_port_, local_bus_, *this, clock_, *this),
       next_ps_(kNever) {

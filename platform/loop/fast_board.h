@@ -30,10 +30,8 @@ class FastBoard : private fpga::LocalBusControl::Core,
                   private fpga::FastCore::Board,
                   private memory::DirectBanks {
  public:
-  // `ring(now_ps)`: the core's interrupt rises. A frame without progress for `stall_timeout_cycles` stalls.
-  // Throws std::invalid_argument if the board has problems.
-  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, std::function<void(std::uint64_t)> ring,
-            std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
+  // `ring(now_ps)`: the core's interrupt rises. Throws std::invalid_argument if the board has problems.
+  FastBoard(const BoardConfig& config, fpga::Fidelity fidelity, std::function<void(std::uint64_t)> ring);
   FastBoard(const FastBoard&) = delete;
   FastBoard& operator=(const FastBoard&) = delete;
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,30 +12,6 @@ namespace stereotlm::area {
 namespace {
 
 using kernels::FilterKernel;
-
-TEST(AreaItems, ListThePartsOfThePapersBoard) {
-  std::vector<std::pair<std::string, std::int64_t>> found;
-  for (const Item& item : items(CoreConfig())) found.emplace_back(item.name, item.count);
-  const std::vector<std::pair<std::string, std::int64_t>> expected = {
-      {"table entry queues", 2},
-      {"source addresses", 2},
-      {"byte selectors", 2},
-      {"pixel queues", 2},
-      {"filters", 2},
-      {"filter columns", 2},
-      {"filter line memories", 2},
-      {"right pixel delays", 79},
-      {"column modules", 80},
-      {"window modules", 80},
-      {"candidate marks", 80},
-      {"select-min unit A", 80},
-      {"select-min unit B", 79},
-      {"left-right check", 1},
-      {"result packer", 1},
-      {"result queue", 1},
-  };
-  EXPECT_EQ(found, expected);
-}
 
 TEST(AreaItems, AreRefusedForACoreWithProblems) {
   EXPECT_EQ(test::message_of([] { items(core(kWindow, 8)); }), "window = 8: must be 3..31, odd");
