@@ -71,6 +71,10 @@ class Reader {
     return found.Scalar();
   }
 
+  std::vector<std::string> texts(const std::string& key) const {
+    return as<std::vector<std::string>>(key, "no list of texts", "must be a list of texts");
+  }
+
   template <typename Matrix>
   Matrix matrix(const std::string& key) const {
     constexpr int rows = Matrix::RowsAtCompileTime;
@@ -107,8 +111,16 @@ class Reader {
         camera.matrix.row(2) != Eigen::RowVector3d(0, 0, 1)) {
       refuse(matrix_key, "no camera", "must be [fx 0 cx; 0 fy cy; 0 0 1] with focal lengths above 0");
     }
-    const auto distortion = matrix<Eigen::Matrix<double, 1, 5>>(distortion_key);
-    std::copy_n(distortion.data(), camera.distortion.size(), camera.distortion.begin());
+    const int count = map(distortion_key).integer("cols", 1, kMost);
+    camera.is_fisheye = count == 4;
+    if (count == 4)
+      set_distortion<4>(camera, distortion_key);
+    else if (count == 8)
+      set_distortion<8>(camera, distortion_key);
+    else if (count == 12)
+      set_distortion<12>(camera, distortion_key);
+    else
+      set_distortion<5>(camera, distortion_key);
     return camera;
   }
 
@@ -122,6 +134,12 @@ class Reader {
   }
 
  private:
+  template <int kCount>
+  void set_distortion(CameraModel& camera, const std::string& key) const {
+    const auto found = matrix<Eigen::Matrix<double, 1, kCount>>(key);
+    std::copy_n(found.data(), kCount, camera.distortion.begin());
+  }
+
   template <typename Value>
   Value as(const std::string& key, const std::string& found, const std::string& rule) const {
     try {
@@ -135,21 +153,11 @@ class Reader {
   std::string path_;
 };
 
-// Q as OpenCV's stereoRectify computes it.
-Eigen::Matrix4d q_of(const Projection& p1, const Projection& p2) {
-  const double focal = p1(0, 0);
-  const double baseline = -p2(0, 3) / p2(0, 0);
-  return Eigen::Matrix4d{{1, 0, 0, -p1(0, 2)},
-                         {0, 1, 0, -p1(1, 2)},
-                         {0, 0, 0, focal},
-                         {0, 0, 1 / baseline, -(p1(0, 2) - p2(0, 2)) / baseline}};
-}
-
 Rectification rectification_of(const Reader& file) {
   constexpr double kCloseEnough = 1e-9;
   Rectification result = {file.rotation("R1"), file.rotation("R2"), file.matrix<Projection>("P1"),
                           file.matrix<Projection>("P2"), file.matrix<Eigen::Matrix4d>("Q")};
-  const Eigen::Matrix4d expected = q_of(result.p1, result.p2);
+  const Eigen::Matrix4d expected = disparity_to_depth(result.p1, result.p2);
   if (!((result.q - expected).norm() <= kCloseEnough * expected.norm()))
     file.refuse("Q", "another matrix", "must be what follows from P1 and P2");
   return result;
@@ -195,6 +203,10 @@ Calibration calibration_of(const Reader& file) {
   result.rectification = rectification_of(file);
   result.left_lut_sha256 = file.text("left_lut_sha256");
   result.right_lut_sha256 = file.text("right_lut_sha256");
+  if (file.has("imported")) {
+    result.imported = file.texts("imported");
+    return result;
+  }
   const Reader grid = file.map("grid");
   result.grid = {grid.integer("columns", 1, kMostPixels), grid.integer("rows", 1, kMostPixels),
                  grid.number("square_mm")};

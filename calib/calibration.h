@@ -64,6 +64,7 @@ struct Source {
 
 // The contents of a calibration file.
 struct Calibration {
+  std::vector<std::string> imported;  // files; if there are any, there is no grid, no quality and no source
   GridShape grid;
   Rig rig;
   Rectification rectification;

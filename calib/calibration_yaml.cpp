@@ -54,12 +54,16 @@ std::string calibration_yaml(const Calibration& calibration) {
   file << "disparities" << calibration.disparities << "disparity_offset" << calibration.disparity_offset;
   file << "left_lut_sha256" << calibration.left_lut_sha256;
   file << "right_lut_sha256" << calibration.right_lut_sha256;
-  file << "M1" << to_mat(rig.left.matrix) << "D1" << to_mat(rig.left.distortion);
-  file << "M2" << to_mat(rig.right.matrix) << "D2" << to_mat(rig.right.distortion);
+  file << "M1" << to_mat(rig.left.matrix) << "D1" << coefficients_of(rig.left);
+  file << "M2" << to_mat(rig.right.matrix) << "D2" << coefficients_of(rig.right);
   file << "R" << to_mat(rig.rotation) << "T" << to_mat(rig.translation);
   file << "R1" << to_mat(rectification.r1) << "R2" << to_mat(rectification.r2);
   file << "P1" << to_mat(rectification.p1) << "P2" << to_mat(rectification.p2) << "Q"
        << to_mat(rectification.q);
+  if (!calibration.imported.empty()) {
+    file << "imported" << calibration.imported;
+    return file.releaseAndGetString();
+  }
   file << "grid"
        << "{"
        << "columns" << calibration.grid.columns << "rows" << calibration.grid.rows << "square_mm"

@@ -47,6 +47,11 @@ std::optional<double> depth_in_the_middle(const Calibration& calibration, int di
   return point ? std::optional(point->z()) : std::nullopt;
 }
 
+double disparity_at(const DepthGeometry& geometry, double depth_mm) {
+  const double of_rectified = (geometry.q(2, 3) / depth_mm - geometry.q(3, 3)) / geometry.q(3, 2);
+  return of_rectified - geometry.disparity_offset;
+}
+
 std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,
                                              const kernels::GrayImage& disparity) {
   std::vector<std::uint16_t> result(disparity.pixels.size(), 0);

@@ -26,6 +26,9 @@ struct DepthGeometry {
 // it is infinitely far away.
 std::optional<double> depth_in_the_middle(const Calibration& calibration, int disparity);
 
+// The disparity of the board's output, not rounded, of a point at this depth in mm.
+double disparity_at(const DepthGeometry& geometry, double depth_mm);
+
 // Depth (z) of each pixel of the board's output, row by row, to the nearest millimetre. It is 0 where there
 // is no disparity, or where the depth is less than half a millimetre or above 65535.
 std::vector<std::uint16_t> depth_millimetres(const DepthGeometry& geometry,

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <opencv2/core/eigen.hpp>  // needs Eigen before it
 #include <opencv2/core/mat.hpp>
 
+#include "calib/rig.h"
 #include "models/kernels/gray_image.h"
 
 // Conversions to and from cv::Mat.
@@ -17,9 +17,11 @@ cv::Mat to_mat(const Matrix& matrix) {
   return result;
 }
 
-// The coefficients of a lens as a matrix of 1 x 5.
-inline cv::Mat to_mat(const std::array<double, 5>& coefficients) {
-  return cv::Mat(1, 5, CV_64F, const_cast<double*>(coefficients.data())).clone();
+// The coefficients of a camera's lens as a matrix of 1 x 4, 5, 8 or 12.
+inline cv::Mat coefficients_of(const CameraModel& camera) {
+  return cv::Mat(1, static_cast<int>(camera.coefficients()), CV_64F,
+                 const_cast<double*>(camera.distortion.data()))
+      .clone();
 }
 
 // `matrix` has the size of `Matrix` and holds doubles.

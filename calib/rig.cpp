@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -16,20 +18,54 @@ struct Bent {
   Eigen::Matrix2d derivative;
 };
 
-Bent bent(const std::array<double, 5>& distortion, const Eigen::Vector2d& direction) {
-  const auto [k1, k2, p1, p2, k3] = distortion;
+// The derivative of the bent angle by the angle.
+double fisheye_slope(const std::array<double, 12>& k, double angle) {
+  const double a2 = angle * angle;
+  return 1 + a2 * (3 * k[0] + a2 * (5 * k[1] + a2 * (7 * k[2] + a2 * 9 * k[3])));
+}
+
+// Whether the radial part of the lens maps directions near this square of a length one to one.
+bool is_one_to_one(const std::array<double, 12>& k, double r2) {
+  const double above = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  const double below = 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
+  const double slope_above = 1 + r2 * (3 * k[0] + r2 * (5 * k[1] + r2 * 7 * k[4]));  // of r * above, by r
+  const double slope_below = 2 * r2 * (k[5] + r2 * (2 * k[6] + r2 * 3 * k[7]));      // of below, times r
+  return below > 0 && slope_above * below - above * slope_below > 0;
+}
+
+Bent bent_by_fisheye(const std::array<double, 12>& distortion, const Eigen::Vector2d& direction) {
+  const double r = direction.norm();
+  if (r < 1e-9) return {direction, Eigen::Matrix2d::Identity()};
+  const double angle = std::atan(r);
+  const double a2 = angle * angle;
+  const auto& k = distortion;
+  const double bent = angle * (1 + a2 * (k[0] + a2 * (k[1] + a2 * (k[2] + a2 * k[3]))));
+  const Eigen::Vector2d outwards = direction / r;
+  const Eigen::Matrix2d radial = outwards * outwards.transpose();
+  return {bent * outwards, fisheye_slope(distortion, angle) / (1 + r * r) * radial +
+                               bent / r * (Eigen::Matrix2d::Identity() - radial)};
+}
+
+Bent bent(const CameraModel& camera, const Eigen::Vector2d& direction) {
+  if (camera.is_fisheye) return bent_by_fisheye(camera.distortion, direction);
+  const auto [k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4] = camera.distortion;
   const double x = direction.x();
   const double y = direction.y();
   const double r2 = x * x + y * y;
-  const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double above = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double below = 1 + r2 * (k4 + r2 * (k5 + r2 * k6));
+  const double radial = above / below;
+  // The derivative of `radial` by x is x times this.
   const double slope =
-      2 * (k1 + r2 * (2 * k2 + r2 * 3 * k3));  // the derivative of `radial` by x is x times this
+      2 * ((k1 + r2 * (2 * k2 + r2 * 3 * k3)) - radial * (k4 + r2 * (2 * k5 + r2 * 3 * k6))) / below;
+  const double prism_x = 2 * (s1 + 2 * s2 * r2);  // likewise of the prism's part of each coordinate
+  const double prism_y = 2 * (s3 + 2 * s4 * r2);
   Bent result;
-  result.direction = {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-                      y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  result.direction = {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) + r2 * (s1 + r2 * s2),
+                      y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y + r2 * (s3 + r2 * s4)};
   const double cross = x * y * slope + 2 * p1 * x + 2 * p2 * y;
-  result.derivative << radial + x * x * slope + 2 * p1 * y + 6 * p2 * x, cross,  //
-      cross, radial + y * y * slope + 6 * p1 * y + 2 * p2 * x;
+  result.derivative << radial + x * x * slope + 2 * p1 * y + 6 * p2 * x + x * prism_x, cross + y * prism_x,
+      cross + x * prism_y, radial + y * y * slope + 6 * p1 * y + 2 * p2 * x + y * prism_y;
   return result;
 }
 
@@ -44,16 +80,23 @@ Eigen::Matrix3d to_rectified(const Eigen::Matrix3d& rotation, const Projection& 
 double CameraModel::widest() const {
   constexpr double kStep = 1e-3;
   constexpr double kMost = 10;
-  const auto [k1, k2, p1, p2, k3] = distortion;
   for (double r = kStep; r < kMost; r += kStep) {
-    const double r2 = r * r;
-    if (1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3)) <= 0) return r - kStep;
+    if (is_fisheye ? fisheye_slope(distortion, std::atan(r)) <= 0 : !is_one_to_one(distortion, r * r))
+      return r - kStep;
   }
   return kMost;
 }
 
+std::size_t CameraModel::coefficients() const {
+  if (is_fisheye) return 4;
+  const auto last =
+      std::find_if(distortion.rbegin(), distortion.rend(), [](double each) { return each != 0; });
+  const auto used = static_cast<std::size_t>(distortion.rend() - last);
+  return used <= 5 ? 5 : used <= 8 ? 8 : 12;
+}
+
 Eigen::Vector2d CameraModel::pixel(const Eigen::Vector2d& direction) const {
-  return (matrix * bent(distortion, direction).direction.homogeneous()).hnormalized();
+  return (matrix * bent(*this, direction).direction.homogeneous()).hnormalized();
 }
 
 // Uses Newton's method, which starts at the direction that the pixel would have without distortion.
@@ -63,7 +106,7 @@ Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d seen = (matrix.inverse() * pixel.homogeneous()).hnormalized();
   Eigen::Vector2d result = seen;
   for (int step = 0; step < kMostSteps; ++step) {
-    const Bent here = bent(distortion, result);
+    const Bent here = bent(*this, result);
     // Where the lens folds the picture over, the determinant of the derivative is no longer positive.
     if (!(here.derivative.determinant() > 0)) break;
     const Eigen::Vector2d error = here.direction - seen;
@@ -77,6 +120,15 @@ Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
 SeenPoint seen_by(const Rig& rig, const Eigen::Vector3d& point) {
   const Eigen::Vector3d to_right = rig.rotation * point + rig.translation;
   return {rig.left.pixel(point.hnormalized()), rig.right.pixel(to_right.hnormalized())};
+}
+
+Eigen::Matrix4d disparity_to_depth(const Projection& p1, const Projection& p2) {
+  const double focal = p1(0, 0);
+  const double baseline = -p2(0, 3) / p2(0, 0);
+  return Eigen::Matrix4d{{1, 0, 0, -p1(0, 2)},
+                         {0, 1, 0, -p1(1, 2)},
+                         {0, 0, 0, focal},
+                         {0, 0, 1 / baseline, -(p1(0, 2) - p2(0, 2)) / baseline}};
 }
 
 Eigen::Vector2d rectified_pixel(const CameraModel& camera, const Eigen::Matrix3d& rotation,

@@ -2,18 +2,26 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace stereotlm::calib {
 
-// A pinhole camera behind a lens with OpenCV's five coefficients (Brown, 1966). Camera coordinates: x right,
-// y down, z forward, in mm. A direction is (x/z, y/z). Pixel coordinates: (0, 0) is the middle of the top
-// left pixel.
+// A pinhole camera behind a lens of one of OpenCV's models: polynomial (Brown, 1966), rational, with a thin
+// prism, or fisheye (Kannala and Brandt, 2006). Camera coordinates: x right, y down, z forward, in mm. A
+// direction is (x/z, y/z). Pixel coordinates: (0, 0) is the middle of the top left pixel.
 struct CameraModel {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // fx 0 cx; 0 fy cy; 0 0 1, pixels
-  std::array<double, 5> distortion{};                    // k1, k2 (radial), p1, p2 (tangential), k3 (radial)
+  // k1, k2 (radial), p1, p2 (tangential), k3, k4, k5, k6 (radial), s1, s2, s3, s4 (prism). Of a fisheye lens
+  // the first four are its k1, k2, k3, k4, and the others are 0.
+  std::array<double, 12> distortion{};
+  bool is_fisheye = false;
+
+  // The number of coefficients that a file needs: 4 of a fisheye lens, else 5, or 8 or 12 if the others are
+  // not 0.
+  std::size_t coefficients() const;
 
   // The largest distance from the axis (length of a direction) up to which the lens maps directions one to
   // one; at most 10. Beyond it the polynomial bends the picture back into itself, which no lens does.
@@ -62,6 +70,9 @@ struct Rectification {
   // of the ideal left camera, in mm.
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
 };
+
+// Rectification::q, as OpenCV's stereoRectify computes it.
+Eigen::Matrix4d disparity_to_depth(const Projection& p1, const Projection& p2);
 
 // Rectifies a rig. The rectified pictures have the size of the rig's pictures, and contain only pixels that
 // the cameras saw.

@@ -53,8 +53,8 @@ Observations observations(const GridShape& shape, const std::vector<GridPair>& p
 }
 
 CameraModel to_camera(const cv::Mat& matrix, const cv::Mat& distortion) {
-  CameraModel camera{to_eigen<Eigen::Matrix3d>(matrix), {}};
-  std::copy_n(distortion.ptr<double>(), camera.distortion.size(), camera.distortion.begin());
+  CameraModel camera{to_eigen<Eigen::Matrix3d>(matrix), {}, false};
+  std::copy_n(distortion.ptr<double>(), distortion.total(), camera.distortion.begin());
   return camera;
 }
 
@@ -211,7 +211,7 @@ Eigen::Isometry3d pose_from_left(const Rig& rig, const std::vector<Eigen::Vector
   }
   cv::Vec3d rotation;
   cv::Vec3d translation;
-  cv::solvePnP(object, image, to_mat(rig.left.matrix), to_mat(rig.left.distortion), rotation, translation);
+  cv::solvePnP(object, image, to_mat(rig.left.matrix), coefficients_of(rig.left), rotation, translation);
   const Eigen::Vector3d axis(rotation[0], rotation[1], rotation[2]);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = Eigen::AngleAxisd(axis.norm(), axis.stableNormalized()).toRotationMatrix();
@@ -274,9 +274,9 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
   const Observations seen = observations(shape, pairs, used);
   return with_refusal([&] {
     cv::Mat m1 = to_mat(guess.left.matrix);
-    cv::Mat d1 = to_mat(guess.left.distortion);
+    cv::Mat d1 = coefficients_of(guess.left);
     cv::Mat m2 = to_mat(guess.right.matrix);
-    cv::Mat d2 = to_mat(guess.right.distortion);
+    cv::Mat d2 = coefficients_of(guess.right);
     cv::Mat rotation, translation, essential, fundamental;
     constexpr int kMostSteps = 200;
     constexpr double kCloseEnough = 1e-9;
@@ -329,10 +329,21 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
 
 Rectification rectify(const Rig& rig) {
   constexpr double kOnlySeenPixels = 0;
+  const cv::Size size(rig.width, rig.height);
+  const cv::Mat m1 = to_mat(rig.left.matrix);
+  const cv::Mat m2 = to_mat(rig.right.matrix);
+  const cv::Mat d1 = coefficients_of(rig.left);
+  const cv::Mat d2 = coefficients_of(rig.right);
+  const cv::Mat r = to_mat(rig.rotation);
+  const cv::Mat t = to_mat(rig.translation);
   cv::Mat r1, r2, p1, p2, q;
-  cv::stereoRectify(to_mat(rig.left.matrix), to_mat(rig.left.distortion), to_mat(rig.right.matrix),
-                    to_mat(rig.right.distortion), {rig.width, rig.height}, to_mat(rig.rotation),
-                    to_mat(rig.translation), r1, r2, p1, p2, q, cv::CALIB_ZERO_DISPARITY, kOnlySeenPixels);
+  if (rig.left.is_fisheye) {
+    cv::fisheye::stereoRectify(m1, d1, m2, d2, size, r, t, r1, r2, p1, p2, q, cv::CALIB_ZERO_DISPARITY, size,
+                               kOnlySeenPixels);
+  } else {
+    cv::stereoRectify(m1, d1, m2, d2, size, r, t, r1, r2, p1, p2, q, cv::CALIB_ZERO_DISPARITY,
+                      kOnlySeenPixels);
+  }
   return {to_eigen<Eigen::Matrix3d>(r1), to_eigen<Eigen::Matrix3d>(r2), to_eigen<Projection>(p1),
           to_eigen<Projection>(p2), to_eigen<Eigen::Matrix4d>(q)};
 }

@@ -21,6 +21,8 @@
 #include "calib/grid_sheet.h"
 #include "calib/tables.h"
 #include "models/kernels/limits.h"
+#include "sw/cli/calibrate_import.h"
+#include "sw/cli/calibration_text.h"
 #include "sw/cli/command.h"
 #include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
@@ -43,20 +45,8 @@ namespace fs = std::filesystem;
 
 constexpr int kWindow = 7;  // window of fpl2003, pixels
 
-std::string row(const std::string& name, const std::string& text) {
-  return fmt::format("{:<16} {}\n", name, text);
-}
-
 std::string rows_text(const RowError& error) {
   return fmt::format("mean {:.3f} px, max {:.3f}, {} corners", error.mean_px, error.max_px, error.corners);
-}
-
-std::string camera_text(const calib::CameraModel& camera) {
-  auto distortion = camera.distortion;
-  for (double& each : distortion) each = files::without_minus_zero(each, 4);
-  return fmt::format("focal length {:.1f}, {:.1f} px, centre ({:.1f}, {:.1f}), distortion {:.4f}",
-                     camera.matrix(0, 0), camera.matrix(1, 1), camera.matrix(0, 2), camera.matrix(1, 2),
-                     fmt::join(distortion, " "));
 }
 
 std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictures) {
@@ -68,27 +58,16 @@ std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictu
                      pictures, result.calibration.grid.corners(), corners, result.left_out.size());
 }
 
-// The nearest and the farthest depth that the disparities cover.
-std::string depths_text(const Calibration& made) {
-  const auto depth = [&made](int disparity) {
-    const auto found = calib::depth_in_the_middle(made, disparity);
-    return found ? fmt::format("{:.0f} mm", *found) : "infinity";
-  };
-  return depth(made.disparities - 1) + " .. " + depth(0);
-}
-
 std::string disparities_text(const Calibration& made) {
   const calib::DisparityRange& grid = made.quality.disparities;
   const int first = made.disparity_offset;
   const int last = first + made.disparities - 1;
-  return fmt::format("{:.1f} .. {:.1f} of the grid; offset {}: 0 .. {} of the board are {} .. {}, {}{}",
-                     grid.min, grid.max, first, made.disparities - 1, first, last, depths_text(made),
+  return fmt::format("{:.1f} .. {:.1f} of the grid; {}{}", grid.min, grid.max, offset_text(made),
                      grid.min < first || grid.max > last ? " (the grid's do not fit)" : "");
 }
 
 std::string table_text(const kernels::RectificationTable& table) {
-  std::string text = fmt::format("{} of {} entries without source", calib::entries_without_source(table),
-                                 table.entries.size());
+  std::string text = entries_text(table);
   if (table.height >= kWindow) {
     text += fmt::format("; a window of {} lines touches up to {} of the picture", kWindow,
                         calib::source_lines(table, kWindow));
@@ -103,12 +82,13 @@ std::string left_out_text(const calib::CalibrationResult& result) {
     const calib::LeftOutCorner& corner = result.left_out[i];
     const calib::Source& source = result.calibration.sources[corner.pair];
     const auto columns = static_cast<std::size_t>(result.calibration.grid.columns);
-    text += row(i == 0 ? "left out" : "",
-                fmt::format("corner ({}, {}) of '{}' and '{}': off by {:.2f} px", corner.corner % columns,
-                            corner.corner / columns, source.left, source.right, corner.misfit_px));
+    text += calibration_row(
+        i == 0 ? "left out" : "",
+        fmt::format("corner ({}, {}) of '{}' and '{}': off by {:.2f} px", corner.corner % columns,
+                    corner.corner / columns, source.left, source.right, corner.misfit_px));
   }
   if (result.left_out.size() > kMost)
-    text += row("", fmt::format("and {} more", result.left_out.size() - kMost));
+    text += calibration_row("", fmt::format("and {} more", result.left_out.size() - kMost));
   return text;
 }
 
@@ -117,27 +97,30 @@ std::string calibration_summary(const calib::CalibrationResult& result, std::siz
   const calib::Quality& quality = made.quality;
   const Eigen::AngleAxisd turn(made.rig.rotation);
   constexpr double kDegrees = 57.29577951308232;
-  std::string text = row("pairs", pairs_text(result, pictures));
+  std::string text = calibration_row("pairs", pairs_text(result, pictures));
   text += left_out_text(result);
-  text += row("left camera", camera_text(made.rig.left));
-  text += row("right camera", camera_text(made.rig.right));
+  text += calibration_row("left camera", camera_text(made.rig.left));
+  text += calibration_row("right camera", camera_text(made.rig.right));
   if (result.lens == calib::Lens::kWithoutK3) {
-    text += row("lenses", "k3 is taken as 0: the grid was not seen far enough out to determine it");
+    text +=
+        calibration_row("lenses", "k3 is taken as 0: the grid was not seen far enough out to determine it");
   }
-  text += row("baseline", fmt::format("{:.2f} mm; turned by {:.2f} degrees against each other",
-                                      made.rig.translation.norm(), kDegrees * turn.angle()));
-  text += row("reprojection", fmt::format("RMS {:.3f} px (left {:.3f}, right {:.3f})", quality.stereo_rms_px,
-                                          quality.left_rms_px, quality.right_rms_px));
-  text += row("row error", rows_text(quality.row_error));
-  text += row("found again", rows_text(quality.found_again) + ", in the rectified pictures");
+  text += calibration_row("baseline", fmt::format("{:.2f} mm; turned by {:.2f} degrees against each other",
+                                                  made.rig.translation.norm(), kDegrees * turn.angle()));
+  text += calibration_row("reprojection",
+                          fmt::format("RMS {:.3f} px (left {:.3f}, right {:.3f})", quality.stereo_rms_px,
+                                      quality.left_rms_px, quality.right_rms_px));
+  text += calibration_row("row error", rows_text(quality.row_error));
+  text += calibration_row("found again", rows_text(quality.found_again) + ", in the rectified pictures");
   if (quality.held_out) {
-    text += row("held out", fmt::format("reprojection RMS {:.3f} px; row error {}; each pair by the others",
+    text += calibration_row("held out",
+                            fmt::format("reprojection RMS {:.3f} px; row error {}; each pair by the others",
                                         quality.held_out->rms_px, rows_text(quality.held_out->row_error)));
   }
-  text += row("rectified", fmt::format("focal length {:.1f} px", made.rectification.p1(0, 0)));
-  text += row("disparities", disparities_text(made));
-  text += row("left table", table_text(result.tables.left));
-  text += row("right table", table_text(result.tables.right));
+  text += calibration_row("rectified", fmt::format("focal length {:.1f} px", made.rectification.p1(0, 0)));
+  text += calibration_row("disparities", disparities_text(made));
+  text += calibration_row("left table", table_text(result.tables.left));
+  text += calibration_row("right table", table_text(result.tables.right));
   return text;
 }
 
@@ -162,6 +145,13 @@ bool read_grid(const std::string& text, calib::GridShape& grid) {
   return columns && rows;
 }
 
+// Width and height; nullopt if the text is not WxH.
+std::optional<std::pair<int, int>> size_of(const std::string& text) {
+  calib::GridShape size;
+  if (!read_grid(text, size)) return std::nullopt;
+  return std::pair(size.columns, size.rows);
+}
+
 Rule is_grid() {
   return valid(kGridRule, [](const std::string& text) {
     calib::GridShape grid;
@@ -180,6 +170,11 @@ struct CalibrateOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
+    if (import.is_given()) return check_import(problems);
+    for (const Option* option : {&size, &unit, &lens, &cameras, &near, &far, &exported}) {
+      if (option->is_given()) problems.add(fmt::format("{}: goes with --import", option->name()));
+    }
+    if (!square.is_given()) problems.add("--square-mm: missing: a side of the grid's squares in millimetres");
     if (print_grid.is_given()) {
       for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
         if (option->is_given())
@@ -203,6 +198,46 @@ struct CalibrateOptions : Options {
       for (const std::string& problem : calib::problems(grid_shape()))
         problems.add(fmt::format("grid: {}", problem));
     }
+  }
+
+  // With --import, in place of the others.
+  void check_import(process::Problems& problems) {
+    for (const Option* option : {&grid, &square, &left, &right, &synthetic, &print_grid}) {
+      if (option->is_given()) problems.add(fmt::format("{}: does not go with --import", option->name()));
+    }
+    ends_in(".yaml")(out, problems);
+    const bool has_depths = near.is_given() && far.is_given();
+    if (exported.is_given()) {
+      for (const Option* option : {&disparities, &offset, &near, &far}) {
+        if (option->is_given()) problems.add(fmt::format("{}: does not go with --export", option->name()));
+      }
+    } else if (offset.is_given() == has_depths || near.is_given() != far.is_given() ||
+               offset.text() == "auto") {
+      problems.add(
+          "--import: needs the depths to see, --near-mm and --far-mm, or instead --disparity-offset N");
+    } else if (has_depths && *near.number<double>() >= *far.number<double>()) {
+      problems.add(fmt::format("--near-mm = {}: must be less than --far-mm, {}", near.text(), far.text()));
+    }
+  }
+
+  Import import_request() const {
+    Import request;
+    request.files = import.texts();
+    calib::ImportOptions& options = request.options;
+    if (size.is_given()) options.size = size_of(size.text());
+    if (unit.is_given()) options.unit_mm = unit.text() == "m" ? 1000 : unit.text() == "cm" ? 10 : 1;
+    if (lens.is_given()) options.is_fisheye = lens.text() == "fisheye";
+    if (cameras.is_given()) {
+      const std::size_t comma = cameras.text().find(',');
+      options.cameras = {cameras.text().substr(0, comma), cameras.text().substr(comma + 1)};
+    }
+    request.disparities = disparities.number<int>().value_or(kDefaultDisparities);
+    request.offset = offset.number<int>();
+    request.near_mm = near.number<double>();
+    request.far_mm = far.number<double>();
+    request.out = out.text();
+    request.format = exported.text();
+    return request;
   }
 
   // Of --grid, or of --print-grid.
@@ -234,8 +269,7 @@ struct CalibrateOptions : Options {
       "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6)",
       {is_grid()});
   Option square =
-      Option(this, "--square-mm", "S", "A side of its squares, in millimetres",
-             {required("a side of the grid's squares in millimetres"), number<double>("a number")});
+      Option(this, "--square-mm", "S", "A side of its squares, in millimetres", {number<double>("a number")});
   Option disparities = Option(this, "--disparities", "D",
                               "Disparities of the board for which the tables are made, 1..254 (default 80)",
                               {number<int>("an integer, " + kernels::kDisparitiesRule.text(), [](int count) {
@@ -249,6 +283,34 @@ struct CalibrateOptions : Options {
   Option print_grid =
       Option(this, "--print-grid", "CxR",
              "Draw such a grid to print, true to scale, with --square-mm and --out alone", {is_grid()});
+  Option import = Option(this, "--import", "FILE..",
+                         "A calibration that exists, in place of pictures: of OpenCV, ROS (two camera_info), "
+                         "Kalibr, Middlebury or KITTI, or one of this program",
+                         {}, Takes::kList);
+  Option size = Option(this, "--size", "WxH", "With --import: the size of the pictures, if the file has none",
+                       {valid("width x height in pixels, such as 640x480",
+                              [](const std::string& text) { return size_of(text).has_value(); })});
+  Option unit = Option(this, "--unit", "mm|cm|m",
+                       "With --import: the unit of T (default: mm of OpenCV and Middlebury, else m)",
+                       {one_of({"mm", "cm", "m"})});
+  Option lens = Option(this, "--lens", "polynomial|fisheye",
+                       "With --import: the lens model of OpenCV's coefficients (default: what the file says, "
+                       "else polynomial)",
+                       {one_of({"polynomial", "fisheye"})});
+  Option cameras =
+      Option(this, "--cameras", "LEFT,RIGHT", "With --import of KITTI: the two projections, such as P2,P3",
+             {valid("two names with a comma, such as P2,P3", [](const std::string& text) {
+               const std::size_t comma = text.find(',');
+               return comma > 0 && comma + 1 < text.size();
+             })});
+  Option near = Option(this, "--near-mm", "Z", "With --import: the nearest depth to see, in mm",
+                       {number<double>("a number above 0", [](double depth) { return depth > 0; })});
+  Option far = Option(this, "--far-mm", "Z", "With --import: the farthest depth to see, in mm",
+                      {number<double>("a number above 0", [](double depth) { return depth > 0; })});
+  Option exported = Option(this, "--export", "opencv|ros",
+                           "With --import: write a calibration of OpenCV, F.yaml, or of ROS, F_left.yaml and "
+                           "F_right.yaml, and no tables",
+                           {one_of({"opencv", "ros"})});
   Option out =
       Option(this, "--out", "F.yaml",
              "The calibration; the tables F_left.lut and F_right.lut and the drawings F_drawings/ go beside "
@@ -388,7 +450,7 @@ class Calibrator {
     add(folder / "scene_left.png", media::encode_png_gray(scene.left));
     add(folder / "scene_right.png", media::encode_png_gray(scene.right));
     const calib::Calibration& made = result_.calibration;
-    const media::Truth truth =
+    const media::GreyTruth truth =
         media::truth_of(rig_->disparity(made.rig, made.rectification, made.disparity_offset), made.rig.width,
                         request_.disparities);
     add(folder / "scene_truth.png", media::encode_png_gray(truth.grey));
@@ -396,13 +458,13 @@ class Calibrator {
   }
 
   std::string written_text() const {
-    std::string text =
-        row("written", fmt::format("{}, {}, {}, {}/", files_.calibration.string(), files_.left_lut.string(),
-                                   files_.right_lut.string(), files_.drawings.string()));
+    std::string text = calibration_row(
+        "written", fmt::format("{}, {}, {}, {}/", files_.calibration.string(), files_.left_lut.string(),
+                               files_.right_lut.string(), files_.drawings.string()));
     if (!rig_) return text;
     const calib::Rig& known = rig_->rig();
-    text += row("known to be", fmt::format("left focal length {:.1f} px, baseline {:.2f} mm",
-                                           known.left.matrix(0, 0), known.translation.norm()));
+    text += calibration_row("known to be", fmt::format("left focal length {:.1f} px, baseline {:.2f} mm",
+                                                       known.left.matrix(0, 0), known.translation.norm()));
     const std::string folder = files_.pictures.string();
     text += fmt::format(
         "{:<16} stereotlm run fpl2003 --source preloaded --set matcher.disparities={} \\\n"
@@ -420,10 +482,11 @@ class Calibrator {
   std::unique_ptr<files::OutputFolder> output_;
   calib::CalibrationResult result_;
   std::map<std::string, std::vector<std::uint8_t>> drawings_;  // by name
-  double truth_scale_ = 1;  // grey levels per disparity, of a synthetic rig
+  int truth_scale_ = 1;  // grey levels per disparity, of a synthetic rig
 };
 
 int calibrate(const CalibrateOptions& options) {
+  if (options.import.is_given()) return import_calibration(options.import_request());
   return options.print_grid.is_given() ? print_grid(options) : Calibrator(options).run();
 }
 

@@ -35,6 +35,19 @@ kernels::RectificationTable load_table(const fs::path& path, const std::string& 
   }
 }
 
+// The command that takes the file, if it is a calibration of another kind.
+std::string import_hint(const std::string& path) {
+  try {
+    const auto format = calibration_functions().foreign_format(
+        {path, files::read_whole_file(path, calib::kMostCalibrationBytes)});
+    if (format)
+      return fmt::format("; this file of {} becomes one by stereotlm calibrate --import '{}' --out rig.yaml",
+                         *format, path);
+  } catch (const std::runtime_error&) {
+  }
+  return "";
+}
+
 bool is_calibration(const fs::path& file) {
   try {
     calib::parse_calibration(files::read_whole_file(file, calib::kMostCalibrationBytes));
@@ -100,7 +113,13 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
     return input.contents[name];
   };
   attempt([&] {
-    const RigFiles files = rig_files(path);
+    const RigFiles files = [&path] {
+      try {
+        return rig_files(path);
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error(error.what() + import_hint(path));
+      }
+    }();
     for (const fs::path& file : {files.calibration, files.left_lut, files.right_lut}) {
       input.files.push_back({named, file.string()});
     }
@@ -115,7 +134,7 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
       if (!problem && board != nullptr) problem = platform::calibration_buffer_problem(*board);
       if (problem) throw std::runtime_error(*problem);
     } catch (const std::runtime_error& error) {
-      throw at_path(error.what());
+      throw at_path(error.what() + (input.calibration ? "" : import_hint(path)));
     }
     const calib::Calibration& calibration = *input.calibration;
     const std::size_t bytes = calib::lut_byte_count(calibration.rig.width, calibration.rig.height);

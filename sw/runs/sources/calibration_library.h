@@ -2,6 +2,7 @@
 
 #include "calib/calibrate.h"
 #include "calib/drawings.h"
+#include "calib/import_rig.h"
 
 namespace stereotlm::runs {
 
@@ -15,6 +16,11 @@ struct CalibrationFunctions {
   // drawings.h
   decltype(&calib::drawings) drawings;
   decltype(&calib::encode_depth_color_png) encode_depth_color_png;
+  // import_rig.h, rig.h
+  decltype(&calib::import_rig) import_rig;
+  decltype(&calib::foreign_format) foreign_format;
+  decltype(&calib::export_rig) export_rig;
+  decltype(&calib::rectify) rectify;
 };
 
 // Throws std::runtime_error if the library, which is installed with the program, cannot be loaded.

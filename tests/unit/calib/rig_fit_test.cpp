@@ -113,7 +113,7 @@ TEST(CameraModel, SeesPointsWhereOpenCVDoes) {
     for (double x = -0.6; x < 0.65; x += 0.1) points.emplace_back(700 * x, 700 * y, 700);
   }
   std::vector<cv::Point2d> expected;
-  cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), to_mat(camera().matrix), to_mat(camera().distortion),
+  cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), to_mat(camera().matrix), coefficients_of(camera()),
                     expected);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d found = camera().pixel({points[i].x / 700, points[i].y / 700});

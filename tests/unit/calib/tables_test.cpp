@@ -27,7 +27,7 @@ struct Map {
 Map map_of(const Rig& rig, const CameraModel& camera, const Eigen::Matrix3d& rotation,
            const Projection& projection) {
   Map map;
-  cv::initUndistortRectifyMap(to_mat(camera.matrix), to_mat(camera.distortion), to_mat(rotation),
+  cv::initUndistortRectifyMap(to_mat(camera.matrix), coefficients_of(camera), to_mat(rotation),
                               to_mat(projection), {rig.width, rig.height}, CV_32FC1, map.columns, map.rows);
   return map;
 }
