@@ -172,7 +172,7 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
   run.timing_only = input.timing_only;
   run.verify = options.verify.is_given();
   run.frames = input.frames;
-  run.truth_scale = options.truth.scale();
+  run.truth_scale = options.truth.scale().value_or(1);
   run.save_frames = options.save_frames.is_given();
   run.record = options.record.is_given();
   run.no_record = options.no_record.is_given();

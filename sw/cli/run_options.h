@@ -101,14 +101,15 @@ struct TraceOptions {
 };
 
 struct TruthOptions {
-  // Grey levels of the truth per disparity.
-  double scale() const { return scale_text.number<double>().value_or(1); }
+  // Levels of the truth per disparity.
+  std::optional<double> scale() const { return scale_text.number<double>(); }
 
   Options* of;
   std::string picture;  // whose truth it is, for the help
-  Option file = Option(of, "--truth", "F", "Ground truth of " + picture + ", 8-bit grey, 0 = unknown");
+  Option file = Option(of, "--truth", "F",
+                       "Ground truth of " + picture + ": grey of 8 or 16 bits, 0 = unknown, or PFM");
   Option scale_text = Option(
-      of, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1)",
+      of, "--truth-scale", "S", "Grey levels of the truth per disparity (default 1; 256 of KITTI)",
       {number<double>("a number above 0", [](double scale) { return std::isfinite(scale) && scale > 0; }),
        goes_with(file, "F")});
 };

@@ -82,8 +82,7 @@ void prepare(const fs::path& source, const fs::path& out) {
   };
   const GrayImage left = picture("aloeL.jpg");
   const GrayImage right = picture("aloeR.jpg");
-  const GrayImage truth =
-      middle_at_half_size(media::load_truth((source / "aloeGT.png").string(), 1).grey, true);
+  const GrayImage truth = middle_at_half_size(media::load_gray((source / "aloeGT.png").string()).image, true);
   fs::create_directories(out);
   write_file(out / "left.png", media::encode_png_gray(left));
   write_file(out / "right.png", media::encode_png_gray(right));
@@ -93,11 +92,10 @@ void prepare(const fs::path& source, const fs::path& out) {
 
 // The truth rounded to whole disparities (halves up). Invalid where it is unknown or not below `disparities`.
 GrayImage nearest_disparity(const media::Truth& truth, int disparities) {
-  GrayImage result(truth.grey.width, truth.grey.height, kernels::kInvalidDisparity);
-  for (std::size_t i = 0; i < truth.grey.pixels.size(); ++i) {
-    const double nearest = std::floor(truth.grey.pixels[i] / truth.scale + 0.5);
-    if (truth.grey.pixels[i] != 0 && nearest < disparities)
-      result.pixels[i] = static_cast<std::uint8_t>(nearest);
+  GrayImage result(truth.width, truth.height, kernels::kInvalidDisparity);
+  for (std::size_t i = 0; i < truth.levels.size(); ++i) {
+    const double nearest = std::floor(truth.levels[i] / truth.scale + 0.5);
+    if (truth.levels[i] != 0 && nearest < disparities) result.pixels[i] = static_cast<std::uint8_t>(nearest);
   }
   return result;
 }

@@ -4,9 +4,13 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>  // before jpeglib.h, which needs it
+#include <cstring>
+#include <utility>
 
 namespace stereotlm::media {
 namespace {
@@ -48,6 +52,13 @@ void check_jpeg_warning(j_common_ptr info, int level) {
   info->err->format_message(info, text);
   const std::string_view message = text;
   if (message.rfind("Premature end", 0) == 0) refuse_damaged();
+  // Bytes between two segments belong to none. Those before the end of the picture may be a part of it.
+  const bool is_stray = message.find("extraneous bytes before marker") != std::string_view::npos;
+  if (is_stray && message.find("0xd9") == std::string_view::npos) {
+    static_cast<Picture*>(info->client_data)
+        ->notes.push_back(std::string(message.substr(message.find(':') + 2)) + " are left out");
+    return;
+  }
   if (info->err->num_warnings++ == 0 && message.rfind("Corrupt JPEG data", 0) == 0)
     refuse_picture("a damaged JPEG", "a picture must be complete");
 }
@@ -76,12 +87,6 @@ struct JpegReader {
   jpeg_progress_mgr progress = {};
 };
 
-// As OpenCV 4.6 converts a pixel of cyan, magenta, yellow and black, which are stored inverted.
-void append_of_cmyk(std::vector<std::uint8_t>& samples, const std::uint8_t* cmyk) {
-  for (const int channel : {2, 1, 0})
-    samples.push_back(static_cast<std::uint8_t>(cmyk[3] - ((255 - cmyk[channel]) * cmyk[3] >> 8)));
-}
-
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
 class Words {
@@ -94,10 +99,10 @@ class Words {
       const bool is_comment = rest_[0] == '#';
       rest_.remove_prefix(is_comment ? std::min(rest_.find_first_of("\r\n"), rest_.size()) : 1);
     }
-    const auto end = std::find_if(rest_.begin(), rest_.end(), is_space);
-    if (end == rest_.end()) refuse_damaged();
+    const auto end = std::find_if(rest_.begin(), rest_.end(), [](char c) { return is_space(c) || c == '#'; });
+    if (end == rest_.begin()) refuse_damaged();
     const std::string_view word = rest_.substr(0, static_cast<std::size_t>(end - rest_.begin()));
-    rest_.remove_prefix(word.size() + 1);
+    rest_.remove_prefix(word.size() + (end != rest_.end() && *end != '#' ? 1 : 0));
     return word;
   }
   // The next word as a number, at most 1,000,000,000.
@@ -153,16 +158,18 @@ Picture decode_png(std::string_view bytes) {
   const bool is_colour = (type & PNG_COLOR_MASK_COLOR) != 0;
   Picture picture = new_picture(png_get_image_width(reader.png, reader.info),
                                 png_get_image_height(reader.png, reader.info), is_colour ? 3 : 1);
-  if (png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0)
-    refuse_picture("a PNG with transparency (tRNS)", kPixelRule);
-  const bool has_alpha = (type & PNG_COLOR_MASK_ALPHA) != 0;
   const bool is_palette = type == PNG_COLOR_TYPE_PALETTE;
-  if (has_alpha || (bits != 8 && !is_palette)) {
-    refuse_picture(
-        fmt::format("{}-bit {}{}", bits, is_colour ? "colour" : "grey", has_alpha ? " with alpha" : ""),
-        kPixelRule);
-  }
+  if (bits != 8 && !is_palette)
+    refuse_picture(fmt::format("{}-bit {}", bits, is_colour ? "colour" : "grey"), kPixelRule);
   if (is_palette) png_set_palette_to_rgb(reader.png);
+  const bool has_keys = png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
+  if (has_keys) png_set_tRNS_to_alpha(reader.png);
+  const bool has_alpha = has_keys || (type & PNG_COLOR_MASK_ALPHA) != 0;
+  if (has_alpha) {
+    picture.channels += 1;
+    picture.samples.resize(picture.samples.size() / static_cast<std::size_t>(picture.channels - 1) *
+                           static_cast<std::size_t>(picture.channels));
+  }
   png_set_bgr(reader.png);
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
@@ -170,21 +177,86 @@ Picture decode_png(std::string_view bytes) {
   const std::size_t row_bytes = picture.samples.size() / static_cast<std::size_t>(picture.height);
   for (std::size_t at = 0; at < picture.samples.size(); at += row_bytes) rows.push_back(&picture.samples[at]);
   png_read_image(reader.png, rows.data());
-  png_read_end(reader.png, nullptr);
+  png_read_end(reader.png, reader.info);
+  if (has_alpha) drop_alpha(picture);
+  png_bytep exif = nullptr;
+  png_uint_32 exif_bytes = 0;
+  if (png_get_eXIf_1(reader.png, reader.info, &exif_bytes, &exif) != 0)
+    note_orientation({reinterpret_cast<const char*>(exif), exif_bytes}, picture);
   return picture;
+}
+
+bool is_deep_png(std::string_view bytes) {
+  constexpr std::size_t kBits = 24;  // of the header, then the type of colour
+  return bytes.size() > kBits + 1 && bytes[kBits] == 16 && bytes[kBits + 1] == PNG_COLOR_TYPE_GRAY;
+}
+
+Truth decode_deep_png(std::string_view bytes) {
+  PngReader reader;
+  png_set_read_fn(reader.png, &bytes, read_png);
+  png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // new_picture() has the limits
+  png_read_info(reader.png, reader.info);
+  const Picture size = new_picture(png_get_image_width(reader.png, reader.info),
+                                   png_get_image_height(reader.png, reader.info), 1);
+  const auto width = static_cast<std::size_t>(size.width);
+  const auto height = static_cast<std::size_t>(size.height);
+  png_set_swap(reader.png);
+  png_set_interlace_handling(reader.png);
+  png_read_update_info(reader.png, reader.info);
+  std::vector<std::uint16_t> levels(width * height);
+  std::vector<png_bytep> rows;
+  for (std::size_t y = 0; y < height; ++y) rows.push_back(reinterpret_cast<png_bytep>(&levels[y * width]));
+  png_read_image(reader.png, rows.data());
+  png_read_end(reader.png, nullptr);
+  Truth truth;
+  truth.width = size.width;
+  truth.height = size.height;
+  truth.levels.assign(levels.begin(), levels.end());
+  return truth;
+}
+
+Truth decode_pfm(std::string_view bytes) {
+  Words words(bytes.substr(2));
+  const std::uint64_t width = words.number();
+  const std::uint64_t height = words.number();
+  const std::string_view order = words.next();  // a scale of brightness; its sign is the order of the bytes
+  const Picture size = new_picture(width, height, 1);
+  if (words.rest().size() < 4 * size.samples.size()) refuse_damaged();
+  Truth truth;
+  truth.width = size.width;
+  truth.height = size.height;
+  truth.levels.resize(size.samples.size());
+  for (std::uint64_t y = 0; y < height; ++y) {  // the last row comes first
+    for (std::uint64_t x = 0; x < width; ++x) {
+      std::array<char, 4> number{};
+      words.rest().copy(number.data(), 4, 4 * ((height - 1 - y) * width + x));
+      if (order[0] != '-') std::reverse(number.begin(), number.end());
+      float level = 0;
+      std::memcpy(&level, number.data(), 4);
+      truth.levels[y * width + x] = std::isfinite(level) && level > 0 ? level : 0;
+    }
+  }
+  return truth;
 }
 
 Picture decode_jpeg(std::string_view bytes) {
   JpegReader reader;
   jpeg_decompress_struct& info = reader.info;
   jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  constexpr int kExif = JPEG_APP0 + 1;
+  constexpr unsigned kMostExif = 0xFFFF;
+  jpeg_save_markers(&info, kExif, kMostExif);
+  Picture picture;
+  info.client_data = &picture;  // for the notes
   jpeg_read_header(&info, TRUE);
-  Picture picture = new_picture(info.image_width, info.image_height, info.num_components == 1 ? 1 : 3);
-  const bool is_cmyk = info.num_components == 4;
-  if (info.num_components == 1) {
-    info.out_color_space = JCS_GRAYSCALE;
-  } else {
-    info.out_color_space = is_cmyk ? JCS_CMYK : JCS_EXT_BGR;
+  const std::vector<std::string> notes = std::move(picture.notes);
+  picture = new_picture(info.image_width, info.image_height, info.num_components == 1 ? 1 : 3);
+  picture.notes = notes;
+  if (info.num_components == 4) refuse_picture("CMYK", kPixelRule);
+  info.out_color_space = info.num_components == 1 ? JCS_GRAYSCALE : JCS_EXT_BGR;
+  for (jpeg_saved_marker_ptr marker = info.marker_list; marker != nullptr; marker = marker->next) {
+    const std::string_view data(reinterpret_cast<const char*>(marker->data), marker->data_length);
+    if (data.substr(0, 4) == "Exif" && data.size() > 6) note_orientation(data.substr(6), picture);
   }
   jpeg_start_decompress(&info);
   const std::size_t row_bytes = info.output_width * static_cast<std::size_t>(info.output_components);
@@ -193,8 +265,7 @@ Picture decode_jpeg(std::string_view bytes) {
   while (info.output_scanline < info.output_height) {
     JSAMPROW rows = row.data();
     jpeg_read_scanlines(&info, &rows, 1);
-    if (!is_cmyk) picture.samples.insert(picture.samples.end(), row.begin(), row.end());
-    for (std::size_t at = 0; is_cmyk && at < row_bytes; at += 4) append_of_cmyk(picture.samples, &row[at]);
+    picture.samples.insert(picture.samples.end(), row.begin(), row.end());
   }
   jpeg_finish_decompress(&info);
   return picture;
@@ -214,19 +285,24 @@ Picture decode_pnm(std::string_view bytes) {
     header.maximum = words.number();
     header.channels = kind == '2' || kind == '5' ? 1 : 3;
   }
-  if (header.channels != 1 && header.channels != 3)
+  if (header.channels < 1 || header.channels > 4)
     refuse_picture(fmt::format("a PAM of depth {}", header.channels), kPixelRule);
   Picture picture = new_picture(header.width, header.height, static_cast<int>(header.channels));
   if (header.maximum != 255) {
     refuse_picture(fmt::format("a maximum level of {}", header.maximum), "a PGM, PPM or PAM must state 255");
   }
   if (kind == '2' || kind == '3') {
-    for (std::uint8_t& sample : picture.samples)
-      sample = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, words.number()));
+    for (std::uint8_t& sample : picture.samples) {
+      const std::uint64_t level = words.number();
+      if (level > 255)
+        refuse_picture(fmt::format("a sample of {}", level), "must be at most the maximum level, 255");
+      sample = static_cast<std::uint8_t>(level);
+    }
   } else {
     if (words.rest().size() < picture.samples.size()) refuse_damaged();
     std::copy_n(words.rest().begin(), picture.samples.size(), picture.samples.begin());
   }
+  if (picture.channels % 2 == 0) drop_alpha(picture);
   // The file has red first.
   for (std::size_t at = 0; picture.channels == 3 && at < picture.samples.size(); at += 3)
     std::swap(picture.samples[at], picture.samples[at + 2]);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -18,13 +19,14 @@ namespace stereotlm::media {
 // stored. Each throws std::runtime_error "what was found: rule" for a picture that is truncated, damaged,
 // larger than a board's images, or of other pixels than 8-bit grey and colour.
 
-inline constexpr const char* kPixelRule = "a picture must be 8-bit grey or 8-bit colour, without alpha";
+inline constexpr const char* kPixelRule = "a picture must be 8-bit grey or 8-bit RGB";
 
 struct Picture {
   int width = 0;     // pixels
   int height = 0;    // pixels
   int channels = 0;  // 1: grey; 3: blue, green, red
   std::vector<std::uint8_t> samples;
+  std::vector<std::string> notes;  // what was read in another way than the file asks for
 };
 
 [[noreturn]] inline void refuse_picture(const std::string& found, const std::string& rule) {
@@ -45,11 +47,28 @@ inline Picture new_picture(std::uint64_t width, std::uint64_t height, int channe
   if (width == 0 || height == 0) refuse_damaged();
   if (width > fpga::kWidthRule.max || height > fpga::kHeightRule.max)
     refuse_large(fmt::format("{}x{}", width, height));
-  return {static_cast<int>(width), static_cast<int>(height), channels,
-          std::vector<std::uint8_t>(width * height * static_cast<std::uint64_t>(channels))};
+  return {static_cast<int>(width),
+          static_cast<int>(height),
+          channels,
+          std::vector<std::uint8_t>(width * height * static_cast<std::uint64_t>(channels)),
+          {}};
 }
 
+// Takes the alpha, which is the last sample of each pixel, from a picture. Refuses alpha that is not opaque.
+void drop_alpha(Picture& picture);
+
+// The value of a field with one number in the first directory of a TIFF, or of the Exif data of another
+// format, which has the form of a TIFF. nullopt if it has none. `place`: where its bytes are.
+std::optional<unsigned> tiff_field(std::string_view tiff, unsigned tag, std::size_t* place = nullptr);
+// Adds a note if the Exif data of a picture ask for another orientation.
+void note_orientation(std::string_view exif, Picture& picture);
+
 Picture decode_png(std::string_view bytes);
+// Whether the file is a PNG of 16-bit grey, for decode_deep_png().
+bool is_deep_png(std::string_view bytes);
+// Ground truth without its scale: of a PNG of 16-bit grey, and of a PFM of one channel.
+Truth decode_deep_png(std::string_view bytes);
+Truth decode_pfm(std::string_view bytes);
 Picture decode_jpeg(std::string_view bytes);
 // PGM, PPM and PAM.
 Picture decode_pnm(std::string_view bytes);

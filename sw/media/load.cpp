@@ -20,6 +20,8 @@ using std::literals::string_view_literals::operator""sv;
 // colour with much metadata.
 constexpr std::uintmax_t kMostBytes = 16 * fpga::kWidthRule.max * fpga::kHeightRule.max;
 
+constexpr std::string_view kPng = "\x89PNG\r\n\x1A\n";
+
 bool begins(std::string_view bytes, std::string_view text) { return bytes.substr(0, text.size()) == text; }
 
 bool is_pnm(std::string_view bytes) {
@@ -38,7 +40,7 @@ bool is_for_opencv(std::string_view bytes) {
 
 Picture decoded(std::string_view bytes) {
   if (bytes.empty()) refuse_picture("an empty file", kPixelRule);
-  if (begins(bytes, "\x89PNG\r\n\x1A\n")) return decode_png(bytes);
+  if (begins(bytes, kPng)) return decode_png(bytes);
   if (begins(bytes, "\xFF\xD8\xFF")) return decode_jpeg(bytes);
   if (is_pnm(bytes)) return decode_pnm(bytes);
   if (is_for_opencv(bytes)) return decoders().decode_picture(bytes);
@@ -46,10 +48,12 @@ Picture decoded(std::string_view bytes) {
                  "a picture must be PNG, JPEG, BMP, PGM, PPM, PAM, TIFF, WebP, JPEG 2000 or Sun raster");
 }
 
-Picture read_picture(const std::string& path) {
+// What `decode` makes of the bytes of a file.
+template <typename Decode>
+auto read(const std::string& path, const Decode& decode) {
   const std::string bytes = files::read_whole_file(path, kMostBytes);
   try {
-    return decoded(bytes);
+    return decode(bytes);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("'{}': {}", path, error.what()));
   }
@@ -78,19 +82,33 @@ kernels::GrayImage to_gray_image(Picture picture) {
 }  // namespace
 
 LoadedGray load_gray(const std::string& path) {
-  Picture picture = read_picture(path);
+  Picture picture = read(path, decoded);
   const bool is_colour = picture.channels != 1;
-  return {to_gray_image(std::move(picture)), is_colour};
+  const std::vector<std::string> notes = picture.notes;
+  return {to_gray_image(std::move(picture)), is_colour, notes};
 }
 
-Truth load_truth(const std::string& path, double scale) {
-  if (!std::isfinite(scale) || scale <= 0) {
-    throw std::invalid_argument("truth scale = " + std::to_string(scale) + ": must be positive and finite");
-  }
-  Picture picture = read_picture(path);
-  if (picture.channels != 1)
-    throw std::runtime_error(fmt::format("'{}': 8-bit colour: ground truth must be 8-bit grey", path));
-  return {to_gray_image(std::move(picture)), scale};
+Truth load_truth(const std::string& path, std::optional<double> scale) {
+  if (scale && (!std::isfinite(*scale) || *scale <= 0))
+    throw std::invalid_argument("truth scale = " + std::to_string(*scale) + ": must be positive and finite");
+  return read(path, [scale](const std::string& bytes) {
+    Truth truth;
+    if (bytes.size() > 2 && begins(bytes, "Pf") && std::isspace(static_cast<unsigned char>(bytes[2])) != 0) {
+      if (scale && *scale != 1)
+        refuse_picture(fmt::format("scale {:g}", *scale), "a PFM holds disparities: its scale is 1");
+      truth = decode_pfm(bytes);
+    } else if (begins(bytes, kPng) && is_deep_png(bytes)) {
+      if (!scale)
+        refuse_picture("16-bit grey", "its scale must be given: --truth-scale 256 for one of KITTI");
+      truth = decode_deep_png(bytes);
+    } else {
+      Picture picture = decoded(bytes);
+      if (picture.channels != 1) refuse_picture("8-bit colour", "ground truth must be grey");
+      truth = {to_gray_image(std::move(picture)), 1};
+    }
+    truth.scale = scale.value_or(1);
+    return truth;
+  });
 }
 
 const Decoders& decoders() {

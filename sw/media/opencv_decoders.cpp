@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -71,9 +72,59 @@ bool is_read_as_black(std::string_view bytes) {
          bytes.substr(kMapLength, 4) == std::string_view("\0\0\0\0", 4);
 }
 
-Picture decode_by_opencv(std::string_view bytes) {
-  if (is_read_as_black(bytes))
+// A bitmap with 32 bits a pixel may have alpha, which OpenCV takes from none or leaves out.
+void check_alpha_of_bitmap(std::string_view bytes) {
+  const auto number = [bytes](std::size_t at) {
+    std::uint32_t value = 0;
+    if (at + 4 <= bytes.size()) std::memcpy(&value, bytes.data() + at, 4);  // little endian, as in memory
+    return value;
+  };
+  if (bytes.substr(0, 2) != "BM" || (number(28) & 0xFFFFU) != 32) return;
+  const auto is = [&](unsigned char alpha) {
+    for (std::size_t at = number(10) + 3; at < bytes.size(); at += 4) {
+      if (static_cast<unsigned char>(bytes[at]) != alpha) return false;
+    }
+    return true;
+  };
+  if (!is(0) && !is(255))
+    refuse_picture("a bitmap with alpha", std::string(kPixelRule) + " without transparency");
+}
+
+// Refuses what OpenCV would change: black and white is stretched, other inks are taken for alpha. Returns the
+// file without an orientation, which OpenCV would apply.
+std::string checked_tiff(std::string_view bytes) {
+  std::string tiff(bytes);
+  if (bytes.substr(0, 2) != "II" && bytes.substr(0, 2) != "MM") return tiff;
+  constexpr unsigned kBits = 258;
+  constexpr unsigned kPhotometric = 262;
+  constexpr unsigned kInks = 5;
+  constexpr unsigned kOrientation = 274;
+  if (tiff_field(bytes, kBits) == 1U) refuse_picture("1-bit grey", kPixelRule);
+  if (tiff_field(bytes, kPhotometric) == kInks) refuse_picture("CMYK", kPixelRule);
+  std::size_t place = 0;
+  if (tiff_field(bytes, kOrientation, &place)) {
+    const char one[] = {0, 1, 0};
+    tiff.replace(place, 2, bytes[0] == 'I' ? one + 1 : one, 2);
+  }
+  return tiff;
+}
+
+// The Exif data of a WebP; empty if it has none.
+std::string_view exif_of_webp(std::string_view bytes) {
+  std::uint32_t size = 0;
+  for (std::size_t at = 12; bytes.substr(0, 4) == "RIFF" && at + 8 <= bytes.size();
+       at += 8 + size + size % 2) {
+    std::memcpy(&size, bytes.data() + at + 4, 4);  // little endian, as in memory
+    if (bytes.substr(at, 4) == "EXIF") return bytes.substr(at + 8, size);
+  }
+  return {};
+}
+
+Picture decode_by_opencv(std::string_view original) {
+  if (is_read_as_black(original))
     refuse_picture("a Sun raster without colour map", "OpenCV 4.6 reads it as black");
+  check_alpha_of_bitmap(original);
+  const std::string bytes = checked_tiff(original);
   cv::Mat decoded;
   try {
     const CapturedStderr captured;
@@ -86,11 +137,12 @@ Picture decode_by_opencv(std::string_view bytes) {
       refuse_large(fmt::format("more than {}x{}", fpga::kWidthRule.max, fpga::kHeightRule.max));
   }
   if (decoded.empty()) refuse_damaged();
-  if (decoded.depth() != CV_8U || (decoded.channels() != 1 && decoded.channels() != 3))
-    refuse_picture(description(decoded), kPixelRule);
+  if (decoded.depth() != CV_8U || decoded.channels() > 4) refuse_picture(description(decoded), kPixelRule);
   Picture picture = new_picture(static_cast<std::uint64_t>(decoded.cols),
                                 static_cast<std::uint64_t>(decoded.rows), decoded.channels());
   decoded.copyTo(cv::Mat(decoded.rows, decoded.cols, decoded.type(), picture.samples.data()));
+  if (picture.channels % 2 == 0) drop_alpha(picture);
+  note_orientation(original.substr(0, 4) == "RIFF" ? exif_of_webp(original) : original, picture);
   return picture;
 }
 

@@ -521,9 +521,9 @@ std::vector<float> SyntheticRig::disparity(const Rig& calibrated, const Rectific
   return result;
 }
 
-Truth truth_of(const std::vector<float>& disparity, int width, int disparities) {
+GreyTruth truth_of(const std::vector<float>& disparity, int width, int disparities) {
   const int scale = 255 / disparities;
-  Truth truth = {GrayImage(width, static_cast<int>(disparity.size()) / width), static_cast<double>(scale)};
+  GreyTruth truth = {GrayImage(width, static_cast<int>(disparity.size()) / width), scale};
   std::transform(disparity.begin(), disparity.end(), truth.grey.pixels.begin(), [scale](float each) {
     const double level = std::floor(double{each} * scale + 0.5);
     return static_cast<std::uint8_t>(level > 0 && level <= 255 ? level : 0);  // 0 for NaN too

@@ -8,7 +8,6 @@
 
 #include "calib/rig.h"
 #include "models/kernels/gray_image.h"
-#include "sw/media/load.h"
 
 namespace stereotlm::media {
 
@@ -70,8 +69,14 @@ class SyntheticRig {
   std::shared_ptr<const made_rig::View> view_;
 };
 
+// Ground truth as a picture that can be written.
+struct GreyTruth {
+  kernels::GrayImage grey;
+  int scale = 1;  // grey levels per disparity
+};
+
 // Disparities of pictures `width` pixels wide as ground truth, for a board with this number of `disparities`:
 // with as many grey levels per disparity as 255 levels allow. A disparity beyond them is unknown.
-Truth truth_of(const std::vector<float>& disparity, int width, int disparities);
+GreyTruth truth_of(const std::vector<float>& disparity, int width, int disparities);
 
 }  // namespace stereotlm::media

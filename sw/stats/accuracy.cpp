@@ -14,29 +14,29 @@ namespace stereotlm::stats {
 namespace {
 
 // The column at which the right picture shows a left pixel; outside 0..width-1 if it does not show the pixel.
-double right_column(int x, int grey, double scale) { return std::floor(x - grey / scale + 0.5); }
+double right_column(int x, double level, double scale) { return std::floor(x - level / scale + 0.5); }
 
 // For each pixel of a row: whether its truth is known and the right camera sees it too. Truths are compared
-// as grey levels, which are integers.
+// as levels, which are integers in pictures.
 std::vector<bool> known_and_visible(const media::Truth& truth, int y) {
-  const int width = truth.grey.width;
+  const int width = truth.width;
   const auto inside = [width](double column) { return column >= 0 && column < width; };
   // [right column]: the largest truth of the left pixels that match a pixel of this column.
-  std::vector<int> nearest_grey(static_cast<std::size_t>(width), 0);
+  std::vector<double> nearest_level(static_cast<std::size_t>(width), 0);
   for (int x = 0; x < width; ++x) {
-    const int grey = truth.grey.at(x, y);
-    const double column = right_column(x, grey, truth.scale);
-    if (grey == 0 || !inside(column)) continue;
-    int& nearest = nearest_grey[static_cast<std::size_t>(column)];
-    nearest = std::max(nearest, grey);
+    const double level = truth.at(x, y);
+    const double column = right_column(x, level, truth.scale);
+    if (level == 0 || !inside(column)) continue;
+    double& nearest = nearest_level[static_cast<std::size_t>(column)];
+    nearest = std::max(nearest, level);
   }
   std::vector<bool> result(static_cast<std::size_t>(width), false);
   for (int x = 0; x < width; ++x) {
-    const int grey = truth.grey.at(x, y);
-    const double column = right_column(x, grey, truth.scale);
-    if (grey == 0 || !inside(column)) continue;
+    const double level = truth.at(x, y);
+    const double column = right_column(x, level, truth.scale);
+    if (level == 0 || !inside(column)) continue;
     result[static_cast<std::size_t>(x)] =
-        nearest_grey[static_cast<std::size_t>(column)] - grey <= truth.scale;
+        nearest_level[static_cast<std::size_t>(column)] - level <= truth.scale;
   }
   return result;
 }
@@ -49,10 +49,9 @@ std::optional<double> percent(std::uint64_t part, std::uint64_t whole) {
 }  // namespace
 
 Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth) {
-  if (disparity.width != truth.grey.width || disparity.height != truth.grey.height) {
+  if (disparity.width != truth.width || disparity.height != truth.height) {
     throw std::invalid_argument(fmt::format("truth = {}x{}: must be as large as the disparity image, {}x{}",
-                                            truth.grey.width, truth.grey.height, disparity.width,
-                                            disparity.height));
+                                            truth.width, truth.height, disparity.width, disparity.height));
   }
   std::uint64_t visible = 0;
   std::uint64_t answered = 0;
@@ -66,7 +65,7 @@ Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth
       const int d = disparity.at(x, y);
       if (d == kernels::kInvalidDisparity) continue;
       ++answered;
-      const double error = std::abs(d - truth.grey.at(x, y) / truth.scale);
+      const double error = std::abs(d - double{truth.at(x, y)} / truth.scale);
       bad_1 += error > 1 ? 1U : 0U;
       bad_2 += error > 2 ? 1U : 0U;
     }

@@ -88,6 +88,7 @@ std::vector<calib::PicturePair> load_grid_pictures(const Names& left, const Name
     problems.attempt(option + ' ', [&] {
       media::LoadedGray loaded = media::load_gray(path);
       converted += loaded.converted_from_colour ? 1 : 0;
+      for (const std::string& note : loaded.notes) process::say("note", fmt::format("'{}': {}", path, note));
       image = std::move(loaded.image);
       const auto refuse = [&path](const std::string& rule) {
         throw std::runtime_error(fmt::format("'{}': {}", path, rule));

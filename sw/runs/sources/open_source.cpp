@@ -121,6 +121,8 @@ std::unique_ptr<PairSource> open_sequence(InputFolder& sequence, const platform:
       media::LoadedGray picture = media::load_gray(path);
       check_size(path, picture.image.width, picture.image.height, board);
       converted += picture.converted_from_colour ? 1U : 0U;
+      for (const std::string& note : picture.notes)
+        opened.notes.push_back(fmt::format("--sequence '{}': {}", path, note));
       sequence.files.push_back({name, files::sha256_file(path)});
       opened.files.push_back({"--sequence", path});
       kept_bytes += picture.image.pixels.size();
@@ -261,6 +263,7 @@ OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* b
     problems.attempt(option + ' ', [&] {
       media::LoadedGray loaded = media::load_gray(file.path);
       if (loaded.converted_from_colour) opened.notes.push_back(file.text() + ": colour, converted to grey");
+      for (const std::string& note : loaded.notes) opened.notes.push_back(file.text() + ": " + note);
       check_size(file.path, loaded.image.width, loaded.image.height, board);
       input = described_file(file.path);
       image = std::move(loaded.image);
@@ -290,12 +293,12 @@ OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* b
   return opened;
 }
 
-std::optional<media::Truth> open_truth(const NamedFile& file, double scale,
+std::optional<media::Truth> open_truth(const NamedFile& file, std::optional<double> scale,
                                        const platform::BoardConfig* board, process::Problems& problems) {
   std::optional<media::Truth> loaded;
   problems.attempt(file.option + ' ', [&] {
     const media::Truth truth = media::load_truth(file.path, scale);
-    check_size(file.path, truth.grey.width, truth.grey.height, board);
+    check_size(file.path, truth.width, truth.height, board);
     loaded = truth;
   });
   return loaded;

@@ -95,7 +95,7 @@ OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* b
 
 // Loads the ground truth and checks its size. Reports problems and returns nullopt if there are any. `board`:
 // null if unknown; the size is then not checked.
-std::optional<media::Truth> open_truth(const NamedFile& file, double scale,
+std::optional<media::Truth> open_truth(const NamedFile& file, std::optional<double> scale,
                                        const platform::BoardConfig* board, process::Problems& problems);
 
 }  // namespace stereotlm::runs

@@ -137,7 +137,7 @@ TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
   for (const std::uint64_t frame : {0U, 1U, 1'000'000U}) {
     EXPECT_EQ(source.pairs->pair(frame).left, scene.frame(frame).left);
     EXPECT_EQ(source.pairs->pair(frame).right, scene.frame(frame).right);
-    EXPECT_EQ(source.pairs->truth(frame)->grey, scene.frame(frame).disparity);
+    EXPECT_EQ(source.pairs->truth(frame)->levels, media::Truth(scene.frame(frame).disparity, 1).levels);
   }
 }
 

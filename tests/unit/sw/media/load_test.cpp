@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -157,15 +158,11 @@ TEST_F(LoadTest, DoesNotTurnByExifOrientation) {
 }
 
 TEST_F(LoadTest, RefusesPixelsThatAreNotEightBitGreyOrColour) {
-  EXPECT_EQ(refusal_of_bytes(encoded(".png", noise(CV_8UC4))),
-            "8-bit colour with alpha: a picture must be 8-bit grey or 8-bit colour, without alpha");
   const std::string png = encoded(".png", noise(CV_8UC1));
   const std::string palette = png_chunk("PLTE", std::string(768, 'p'));
   const std::vector<std::pair<std::string, std::string>> refused = {
-      {encoded(".tiff", noise(CV_8UC4)), "8-bit colour with alpha"},
-      {encoded(".webp", noise(CV_8UC4)), "8-bit colour with alpha"},
-      {png_with(png, png_chunk("tRNS", std::string(2, '\0'))), "tRNS"},
-      {png_with(png, palette + png_chunk("tRNS", "tr"), 3), "alpha"},
+      {png_with(png, png_chunk("tRNS", std::string(2, '\0'))), "transparent"},
+      {png_with(png, palette + png_chunk("tRNS", "tr"), 3), "transparent"},
       {encoded(".png", noise(CV_16UC1)), "16-bit grey: "},
       {encoded(".tiff", noise(CV_16UC1)), "16-bit grey: "},
       {encoded(".pgm", noise(CV_16UC1)), "a maximum level of 65535: "},
@@ -200,7 +197,8 @@ TEST_F(LoadTest, RefusesATruncatedFileOfAnyFormat) {
   struct Format {
     const char* extension;
     std::vector<int> parameters;
-    std::size_t bytes_without_pixels;  // at the end: line ends, a part of a tag that says nothing
+    std::size_t
+        bytes_without_pixels;  // at the end: a part of a tag that says nothing; of a text, its last number
   };
   const std::vector<Format> formats = {{".png", {}, 0},
                                        {".jpg", {}, 0},
@@ -228,7 +226,10 @@ TEST_F(LoadTest, RefusesATruncatedFileOfAnyFormat) {
           } catch (const std::runtime_error&) {
             continue;
           }
-          EXPECT_EQ(loaded.image, expected.image) << extension << ' ' << size;
+          ASSERT_EQ(loaded.image.pixels.size(), expected.image.pixels.size());
+          EXPECT_TRUE(std::equal(loaded.image.pixels.begin(), loaded.image.pixels.end() - 1,
+                                 expected.image.pixels.begin()))
+              << extension << ' ' << size;
         } else {
           EXPECT_NE(refusal_of_bytes(whole.substr(0, size)), "")
               << extension << ' ' << size << " of " << whole.size();
@@ -324,8 +325,9 @@ TEST_F(LoadTest, LoadsTruthAsGreyWithAPositiveScale) {
   const cv::Mat picture = noise(CV_8UC1);
   const std::string path = file(encoded(".png", picture));
   const Truth truth = load_truth(path, 2.5);
-  EXPECT_EQ(truth.grey.pixels, pixels_of(picture));
-  EXPECT_EQ(truth.grey.width, kWidth);
+  const std::vector<std::uint8_t> expected = pixels_of(picture);
+  EXPECT_EQ(truth.levels, std::vector<float>(expected.begin(), expected.end()));
+  EXPECT_EQ(truth.width, kWidth);
   EXPECT_EQ(truth.scale, 2.5);
   EXPECT_NO_THROW(load_truth(path, 1e-3));
   for (const double scale : {0.0, -1.0, std::nan(""), HUGE_VAL})
@@ -334,16 +336,42 @@ TEST_F(LoadTest, LoadsTruthAsGreyWithAPositiveScale) {
     const std::string other = file(encoded(".png", noise(type)));
     return test::message_of([&] { load_truth(other, 1); });
   };
-  EXPECT_THAT(refused(CV_8UC3), HasSubstr("': 8-bit colour: ground truth must be 8-bit grey"));
-  EXPECT_THAT(refused(CV_16UC1), HasSubstr("': 16-bit grey: "));
+  EXPECT_THAT(refused(CV_8UC3), HasSubstr("': 8-bit colour: ground truth must be grey"));
+  EXPECT_THAT(refused(CV_16UC3), HasSubstr("': 16-bit colour: "));
+}
+
+TEST_F(LoadTest, LoadsTruthOfKittiAndMiddlebury) {
+  const std::string path = file(encoded(".png", cv::Mat(1, 3, CV_16UC1, cv::Scalar(20 * 256 + 128))));
+  EXPECT_EQ(load_truth(path, 256).levels, (std::vector<float>{5248, 5248, 5248}));
+  EXPECT_THAT(test::message_of([&] { load_truth(path, {}); }),
+              HasSubstr("16-bit grey: its scale must be given"));
+  // Rows from the bottom up: 1.5 and infinite below, 20 and 0 above.
+  const auto pfm = [](const std::string& order, bool is_little) {
+    std::string text = "Pf\n2 2\n" + order + "\n";
+    for (const float level : {1.5F, std::numeric_limits<float>::infinity(), 20.0F, 0.0F}) {
+      std::string bytes(4, ' ');
+      std::memcpy(bytes.data(), &level, 4);
+      text += is_little ? bytes : std::string(bytes.rbegin(), bytes.rend());
+    }
+    return text;
+  };
+  for (const std::string& bytes : {pfm("-1.0", true), pfm("1", false)}) {
+    const Truth truth = load_truth(file(bytes), {});
+    EXPECT_EQ(truth.levels, (std::vector<float>{20, 0, 1.5F, 0}));
+    EXPECT_EQ(truth.scale, 1);
+    EXPECT_THAT(test::message_of([&] { load_truth(file(bytes), 256); }),
+                HasSubstr("a PFM holds disparities"));
+    EXPECT_THAT(test::message_of([&] { load_truth(file(bytes.substr(0, bytes.size() - 1)), {}); }),
+                HasSubstr("truncated or damaged"));
+  }
 }
 
 TEST(Truth, NeedsTheLargestDisparityRoundedUpAndZero) {
-  Truth truth = {kernels::GrayImage(2, 1), 2};
+  Truth truth(kernels::GrayImage(2, 1), 2);
   EXPECT_EQ(disparities_needed(truth), 1);
-  truth.grey.at(1, 0) = 158;
+  truth.levels[1] = 158;
   EXPECT_EQ(disparities_needed(truth), 80);
-  truth.grey.at(0, 0) = 159;
+  truth.levels[0] = 159;
   EXPECT_EQ(disparities_needed(truth), 81);
   truth.scale = 1.5;
   EXPECT_EQ(disparities_needed(truth), 107);

@@ -85,7 +85,7 @@ TEST(SyntheticRig, HasTheDisparityOfARecoveredCalibrationWithAnOffset) {
 }
 
 TEST(Truth, HasAsManyLevelsADisparityAsAPictureAllows) {
-  const Truth truth = truth_of({0.2F, 1.5F, std::nanf(""), 64, 84.9F, -1}, 3, 80);
+  const GreyTruth truth = truth_of({0.2F, 1.5F, std::nanf(""), 64, 84.9F, -1}, 3, 80);
   EXPECT_EQ(truth.scale, 3);
   EXPECT_EQ(truth.grey.width, 3);
   EXPECT_EQ(truth.grey.height, 2);
