@@ -37,7 +37,8 @@ class ImportTest(ProgramTest):
             for table, expected in zip(self.tables(form), first):
                 self.assertLess(sum(a != b for a, b in zip(table, expected)), 4)  # entries at a rounding border
             self.succeeds(self.imported(*paths, *offset, out=f"{form}.yaml"))  # replaces its own
-        self.refused(self.imported(self.rig, *offset, out="f_left.yaml"), "f_left.yaml")  # no file of its own
+        # Not a file of its own kind.
+        self.refused(self.imported(self.rig, *offset, out="f_left.yaml"), "f_left.yaml")
         self.refused(self.imported(self.rig, "--export", "opencv", out="mine.yaml"), "mine.yaml")
 
     def test_leads_from_a_file_to_depths(self):
