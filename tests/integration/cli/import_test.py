@@ -35,7 +35,8 @@ class ImportTest(ProgramTest):
             self.assertEqual(out.split(maxsplit=1)[1].strip(), ", ".join(map(str, paths)))
             self.assertIn("imported", self.succeeds(self.imported(*paths, *DEPTHS, out=f"{form}.yaml")))
             for table, expected in zip(self.tables(form), first):
-                self.assertLess(sum(a != b for a, b in zip(table, expected)), 4)  # entries at a rounding border
+                different = sum(a != b for a, b in zip(table, expected))
+                self.assertLess(different, 4, "entries at a rounding border")
             self.succeeds(self.imported(*paths, *offset, out=f"{form}.yaml"))  # replaces its own
         # Not a file of its own kind.
         self.refused(self.imported(self.rig, *offset, out="f_left.yaml"), "f_left.yaml")
