@@ -68,11 +68,6 @@ TEST(FoldedArea, KeepsTheSmallestSumOfThePassesSoFar) {
   EXPECT_EQ(item_of(core(kUnits, 40), "select-min unit B").count, 40);
 }
 
-TEST(FoldedArea, ChangesNothingElse) {
-  for (const char* const name : {"filters", "left-right check", "result packer", "pixel queues"})
-    expect_all(name, {{core(kUnits, 40), all_of(core(), name)}});
-}
-
 // 4 rows of results: columns of 10 slots.
 TEST(RowsArea, SharesPixelsFiltersAndColumnModules) {
   for (const char* const name : {"pixel queues", "filters", "filter columns", "filter line memories",
