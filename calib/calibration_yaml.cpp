@@ -54,6 +54,9 @@ std::string calibration_yaml(const Calibration& calibration) {
   file << "disparities" << calibration.disparities << "disparity_offset" << calibration.disparity_offset;
   file << "left_lut_sha256" << calibration.left_lut_sha256;
   file << "right_lut_sha256" << calibration.right_lut_sha256;
+  if (rig.left.is_fisheye)
+    file << "lens_model"
+         << "fisheye";
   file << "M1" << to_mat(rig.left.matrix) << "D1" << coefficients_of(rig.left);
   file << "M2" << to_mat(rig.right.matrix) << "D2" << coefficients_of(rig.right);
   file << "R" << to_mat(rig.rotation) << "T" << to_mat(rig.translation);

@@ -22,6 +22,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr int kMostPixels = 2048;  // of a side of a picture with a table
+
 // A value of a file: its numbers, row by row, or its text.
 struct Field {
   std::string place;  // of the file, as messages name it
@@ -238,6 +240,11 @@ void set_size(const Reader& reader, const ImportOptions& options, Rig& rig) {
   }
   if (!size && !options.size)
     reader.refuse("the size of the pictures is not in it: must be given by --size WxH");
+  const auto is_length = [](double pixels) {
+    return pixels >= 1 && pixels <= kMostPixels && pixels == std::floor(pixels);
+  };
+  if (size && !(is_length(size->first) && is_length(size->second)))
+    refuse(*place, fmt::format("{:g}x{:g} pixels", size->first, size->second), "must be 1..2048 each");
   if (size && options.size && *size != std::pair<double, double>(*options.size))
     refuse(*place, fmt::format("{}x{}", size->first, size->second), "must be that of --size");
   rig.width = options.size ? options.size->first : static_cast<int>(size->first);
@@ -305,7 +312,7 @@ ImportedRig import_opencv(const Reader& reader, const ImportOptions& options) {
 
 ImportedRig import_ros(const std::vector<Reader>& cameras, const ImportOptions& options) {
   constexpr double kMillimetres = 1000;
-  if (cameras.size() != 2) throw std::runtime_error("a rig of ROS has two camera_info: --import LEFT RIGHT");
+  if (cameras.size() != 2) cameras.front().refuse("a rig of ROS has two camera_info: --import LEFT RIGHT");
   ImportedRig result{"ROS camera_info", {}, {}};
   std::array<Matrix3d, 2> rotations;
   std::array<Projection, 2> projections;
@@ -314,9 +321,8 @@ ImportedRig import_ros(const std::vector<Reader>& cameras, const ImportOptions& 
     Rig size;
     set_size(reader, options, size);
     if (i == 1 && (size.width != result.rig.width || size.height != result.rig.height))
-      throw std::runtime_error(
-          fmt::format("the right camera has {}x{} pixels: must be {}x{}, as the left one", size.width,
-                      size.height, result.rig.width, result.rig.height));
+      reader.refuse(fmt::format("{}x{} pixels: must be {}x{}, as the left camera has", size.width,
+                                size.height, result.rig.width, result.rig.height));
     result.rig.width = size.width;
     result.rig.height = size.height;
     CameraModel& camera = i == 0 ? result.rig.left : result.rig.right;
@@ -440,7 +446,7 @@ void check(const ImportedRig& found, const ImportOptions& options, const Reader&
   const Rig& rig = found.rig;
   const Vector3d& t = rig.translation;
   const std::string place = fmt::format("T = {:.1f}, {:.1f}, {:.1f} mm: ", t.x(), t.y(), t.z());
-  if (rig.width < 1 || rig.width > 2048 || rig.height < 1 || rig.height > 2048)
+  if (rig.width < 1 || rig.width > kMostPixels || rig.height < 1 || rig.height > kMostPixels)
     reader.refuse(fmt::format("pictures of {}x{} pixels: must be 1..2048 each", rig.width, rig.height));
   if (std::abs(t.y()) > std::abs(t.x()))
     reader.refuse(place + "one camera is above the other: they must be side by side");

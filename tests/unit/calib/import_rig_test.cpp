@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 
+#include "calib/calibration.h"
 #include "calib/opencv_conversions.h"
 
 namespace stereotlm::calib {
@@ -89,6 +90,22 @@ TEST(ImportRig, ReadsWhatItExports) {
   }
 }
 
+// A calibration of this program is read as one of OpenCV, its lens model too.
+TEST(ImportRig, KeepsTheLensModelOfItsOwnFiles) {
+  for (const Lens& lens : kLenses) {
+    Calibration made;
+    made.imported = {"a file"};
+    made.disparities = 80;
+    made.rig = rig_with(lens.coefficients, lens.is_fisheye);
+    made.rectification = rectify(made.rig);
+    const std::string text = calibration_yaml(made);
+    for (const Rig& rig : {import_rig({{"rig.yaml", text}}, {}).rig, parse_calibration(text).rig}) {
+      EXPECT_EQ(rig.left.is_fisheye, lens.is_fisheye);
+      EXPECT_EQ(rig.left.distortion, made.rig.left.distortion);
+    }
+  }
+}
+
 const char* const kNamed = R"({"K_left": [[500, 0, 320], [0, 500, 240], [0, 0, 1]], "dist_left": [0, 0, 0, 0],
   "K_right": [[500, 0, 320], [0, 500, 240], [0, 0, 1]], "dist_right": [-0.1, 0, 0, 0],
   "R": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "T": [-0.12, 0, 0], "image_size": [640, 480]})";
@@ -149,7 +166,7 @@ TEST(ImportRig, RefusesWhatIsNoRig) {
   EXPECT_THAT(refused(kNamed, "\"T\"", "\"X\""), HasSubstr("R and T, or R1, R2 and P2: missing"));
   EXPECT_THAT(refused(kNamed, "dist_left", "other"), HasSubstr("D1 or distCoeffs1: missing"));
   EXPECT_THAT(refused(kNamed, "[-0.1, 0, 0, 0]", "[-0.1, 0, 0]"), HasSubstr("must be 4, 5, 8 or 12"));
-  EXPECT_THAT(refused(kNamed, "[640, 480]", "[0, 480]"), HasSubstr("pictures of 0x480 pixels"));
+  EXPECT_THAT(refused(kNamed, "[640, 480]", "[0, 480]"), HasSubstr("0x480 pixels: must be 1..2048 each"));
   EXPECT_THAT(refused(kNamed, "image_size", "other"), HasSubstr("must be given by --size WxH"));
   ImportOptions sized;
   sized.size = {320, 240};
