@@ -64,6 +64,8 @@ struct SingleFit {
   cv::Mat distortion;
   std::vector<cv::Mat> rotations;
   std::vector<cv::Mat> translations;
+  cv::Mat sigmas;  // of fx, fy, cx, cy and the coefficients, one sigma
+  double rms_px = 0;
 };
 
 // Runs a step of the fit, and turns an exception of OpenCV into std::runtime_error.
@@ -82,8 +84,9 @@ SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv:
                      cv::Size size, Lens lens) {
   return with_refusal([&] {
     SingleFit fit;
-    cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
-                        fit.translations, flags_of(lens));
+    cv::Mat none;
+    fit.rms_px = cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
+                                     fit.translations, fit.sigmas, none, none, flags_of(lens));
     return fit;
   });
 }
@@ -157,18 +160,16 @@ bool is_used(const std::vector<bool>& pair) {
   return std::find(pair.begin(), pair.end(), true) != pair.end();
 }
 
-void check_pairs(const Used& used) {
-  const auto count = static_cast<std::size_t>(std::count_if(used.begin(), used.end(), is_used));
-  if (count >= kFewestPairs) return;
-  throw std::invalid_argument("pairs of pictures whose grid fits = " + std::to_string(count) + ": must be " +
-                              std::to_string(kFewestPairs) + " or more");
+bool has_few_pairs(const Used& used) {
+  return static_cast<std::size_t>(std::count_if(used.begin(), used.end(), is_used)) < kFewestPairs;
 }
 
 RigFit fit_once(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
-                const Rig& guess, Lens lens) {
+                const Rig& guess, Lens lens, Lenses lenses = Lenses::kFitted) {
   RigFit fit;
   fit.used = used;
-  fit.rig = solve_rig(shape, pairs, used, guess, lens);
+  fit.lens = lens;
+  fit.rig = solve_rig(shape, pairs, used, guess, lens, lenses);
   const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
   for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
     fit.misfits.push_back(misfit(fit.rig, shape, pairs[pair], is_used(used[pair]) ? used[pair] : all));
@@ -196,6 +197,47 @@ void add_figures(RigFit& fit) {
   fit.left_rms_px = std::sqrt(left / corners);
   fit.right_rms_px = std::sqrt(right / corners);
   fit.stereo_rms_px = std::sqrt((left + right) / (2 * corners));
+}
+
+Rig guess_of(const SingleFit& left, const SingleFit& right, cv::Size size) {
+  return {size.width, size.height, to_camera(left.matrix, left.distortion),
+          to_camera(right.matrix, right.distortion)};
+}
+
+// Whether a camera has another focal length or centre than its single fit, by more than 3 sigma.
+bool is_bent(const CameraModel& camera, const SingleFit& alone) {
+  const Eigen::Matrix3d change = camera.matrix - to_eigen<Eigen::Matrix3d>(alone.matrix);
+  const double changes[] = {change(0, 0), change(1, 1), change(0, 2), change(1, 2)};
+  for (int i = 0; i < 4; ++i) {
+    if (std::abs(changes[i]) > 3 * alone.sigmas.at<double>(i)) return true;
+  }
+  return false;
+}
+
+// The fit that keeps the lenses of the single fits to the same corners, and whether a fit bends these lenses.
+struct KeptFit {
+  RigFit fit;
+  SingleFit left;
+  SingleFit right;
+
+  bool is_bent(const Rig& rig) const {
+    return calib::is_bent(rig.left, left) || calib::is_bent(rig.right, right);
+  }
+};
+
+KeptFit fit_kept(const GridShape& shape, cv::Size size, const std::vector<GridPair>& pairs, const Used& used,
+                 Lens lens) {
+  const Observations seen = observations(shape, pairs, used);
+  KeptFit kept = {{}, fit_camera(seen, seen.left, size, lens), fit_camera(seen, seen.right, size, lens)};
+  kept.fit = fit_once(shape, pairs, used, guess_of(kept.left, kept.right, size), lens, Lenses::kKept);
+  add_figures(kept.fit);
+  Evidence& evidence = kept.fit.evidence;
+  evidence.alone_rms_px = std::max(kept.left.rms_px, kept.right.rms_px);
+  evidence.rig_rms_px = kept.fit.stereo_rms_px;
+  for (const SingleFit* each : {&kept.left, &kept.right})
+    evidence.focal_sigma_px =
+        std::max({evidence.focal_sigma_px, each->sigmas.at<double>(0), each->sigmas.at<double>(1)});
+  return kept;
 }
 
 using Step = Eigen::Matrix<double, 6, 1>;  // rotation vector (rad), translation (mm)
@@ -270,7 +312,7 @@ Eigen::Isometry3d fitted_pose(const Rig& rig, const std::vector<Eigen::Vector3d>
 }  // namespace
 
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
-              Lens lens) {
+              Lens lens, Lenses lenses) {
   const Observations seen = observations(shape, pairs, used);
   return with_refusal([&] {
     cv::Mat m1 = to_mat(guess.left.matrix);
@@ -280,10 +322,11 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
     cv::Mat rotation, translation, essential, fundamental;
     constexpr int kMostSteps = 200;
     constexpr double kCloseEnough = 1e-9;
-    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height},
-                        rotation, translation, essential, fundamental,
-                        cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
-                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+    cv::stereoCalibrate(
+        seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height}, rotation,
+        translation, essential, fundamental,
+        lenses == Lenses::kKept ? cv::CALIB_FIX_INTRINSIC : cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
+        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
     return Rig{guess.width,
                guess.height,
                to_camera(m1, d1),
@@ -296,7 +339,7 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
   const std::vector<Eigen::Vector3d> points = corner_points(shape);
   const Eigen::Isometry3d pose = fitted_pose(rig, points, pair, used);
-  Misfit result;
+  Misfit result{pose, {}, {}};
   for (std::size_t corner = 0; corner < points.size(); ++corner) {
     const SeenPoint seen = seen_by(rig, pose * points[corner]);
     result.left.push_back((seen.left - pair.left[corner]).norm());
@@ -306,25 +349,40 @@ Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, cons
 }
 
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs, Lens lens) {
+  constexpr double kSuspicious = 1.5;
+  const cv::Size size(width, height);
   const auto corners = static_cast<std::size_t>(shape.corners());
   Used used(pairs.size(), std::vector<bool>(corners, true));
-  check_pairs(used);
-  const Observations seen = observations(shape, pairs, used);
-  const SingleFit left = fit_camera(seen, seen.left, {width, height}, lens);
-  const SingleFit right = fit_camera(seen, seen.right, {width, height}, lens);
-  const Rig guess{width, height, to_camera(left.matrix, left.distortion),
-                  to_camera(right.matrix, right.distortion)};
-  used = pairs_that_agree(left, right, corners);
-  check_pairs(used);
-  RigFit fit = fit_once(shape, pairs, used, guess, lens);
+  if (has_few_pairs(used))
+    throw std::invalid_argument("pairs of pictures = " + std::to_string(pairs.size()) + ": must be " +
+                                std::to_string(kFewestPairs) + " or more");
+  const Observations all = observations(shape, pairs, used);
+  const SingleFit left = fit_camera(all, all.left, size, lens);
+  const SingleFit right = fit_camera(all, all.right, size, lens);
+  if (const Used agree = pairs_that_agree(left, right, corners); !has_few_pairs(agree)) used = agree;
+  RigFit fit = fit_once(shape, pairs, used, guess_of(left, right, size), lens);
+  bool has_few = false;
   for (int round = 1; round < kMostRounds; ++round) {
     used = corners_that_fit(fit);
-    check_pairs(used);
-    if (used == fit.used) break;
+    has_few = has_few_pairs(used);
+    if (has_few || used == fit.used) break;
     fit = fit_once(shape, pairs, used, fit.rig, lens);
   }
   add_figures(fit);
+  KeptFit kept = fit_kept(shape, size, pairs, fit.used, lens);
+  const bool is_bent = kept.is_bent(fit.rig);
+  Evidence evidence = kept.fit.evidence;
+  evidence.has_few_pairs = has_few;
+  if (!is_bent) evidence.rig_rms_px = std::min(evidence.rig_rms_px, fit.stereo_rms_px);
+  evidence.lenses_are_kept = is_bent && evidence.ratio() >= kSuspicious;
+  if (evidence.lenses_are_kept) fit = std::move(kept.fit);
+  fit.evidence = evidence;
   return fit;
+}
+
+Evidence evidence_of(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs) {
+  const Used all(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
+  return fit_kept(shape, {width, height}, pairs, all, Lens::kFull).fit.evidence;
 }
 
 Rectification rectify(const Rig& rig) {
