@@ -126,12 +126,12 @@ void check_tilt(const RigFit& fit, const Certainty& certainty) {
   constexpr double kLeastTilt = 3;    // degrees
   constexpr double kMostSigma = 0.1;  // of the focal length
   const double focal = fit.rig.left.matrix(0, 0);
-  if (certainty.tilt_deg >= kLeastTilt && fit.evidence.focal_sigma_px <= kMostSigma * focal) return;
+  if (certainty.tilt_deg >= kLeastTilt && certainty.focal_sigma_px <= kMostSigma * focal) return;
   refuse(fmt::format(
       "the grid is tilted by {:.1f} degrees at most, and one sigma of the focal length, {:.0f} px, "
       "is {:.0f} px: the focal lengths are not determined: take pairs with the grid tilted by 20 "
       "to 40 degrees, near and far",
-      certainty.tilt_deg, focal, fit.evidence.focal_sigma_px));
+      certainty.tilt_deg, focal, certainty.focal_sigma_px));
 }
 
 // What no offset can mend.

@@ -234,9 +234,6 @@ KeptFit fit_kept(const GridShape& shape, cv::Size size, const std::vector<GridPa
   Evidence& evidence = kept.fit.evidence;
   evidence.alone_rms_px = std::max(kept.left.rms_px, kept.right.rms_px);
   evidence.rig_rms_px = kept.fit.stereo_rms_px;
-  for (const SingleFit* each : {&kept.left, &kept.right})
-    evidence.focal_sigma_px =
-        std::max({evidence.focal_sigma_px, each->sigmas.at<double>(0), each->sigmas.at<double>(1)});
   return kept;
 }
 

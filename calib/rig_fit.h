@@ -34,7 +34,6 @@ enum class Lens : std::uint8_t { kFull, kWithoutK3 };
 struct Evidence {
   double alone_rms_px = 0;       // reprojection of the worse camera, which is fitted by itself
   double rig_rms_px = 0;         // of both cameras with the lenses of these fits
-  double focal_sigma_px = 0;     // one sigma of a focal length of these fits, the largest
   bool lenses_are_kept = false;  // whether the rig has these lenses, because a joint fit would bend them
   bool has_few_pairs = false;    // whether fewer than kFewestPairs fit, so that no corner was left out
 

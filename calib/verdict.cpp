@@ -27,7 +27,7 @@ std::string verdict_of(const Calibration& calibration) {
   }
   if (focal > kMostSigma || baseline > kMostSigma || its.tilt_deg < kLeastTilt) {
     weak.push_back(
-        fmt::format("one sigma of the focal length is {:.1f} %, of the baseline {:.1f} %, and the "
+        fmt::format("one sigma of the focal length is {:.2g} %, of the baseline {:.2g} %, and the "
                     "grid is tilted by {:.0f} degrees at most: add pairs with the grid tilted by 20 "
                     "to 40 degrees, near and far",
                     focal, baseline, its.tilt_deg));
@@ -41,7 +41,7 @@ std::string verdict_of(const Calibration& calibration) {
   if (!weak.empty()) return fmt::format("usable: {}", fmt::join(weak, "; "));
   return fmt::format(
       "good: the rig fits as well as its cameras ({:.2f} and {:.2f} px), and one sigma of the "
-      "focal length is {:.1f} %, of the baseline {:.1f} %",
+      "focal length is {:.2g} %, of the baseline {:.2g} %",
       its.rig_rms_px, its.alone_rms_px, focal, baseline);
 }
 
