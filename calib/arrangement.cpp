@@ -37,7 +37,7 @@ RightOf mirrored(const GridShape& shape, int width) {
 }
 
 // The evidence if the left picture i belongs to the right one partner(i), with these right corners. Nullopt if fewer than kFewestPairs are left, or no rig fits.
-std::optional<Evidence> evidence_with(const GridViews& views, const RightOf& right_of,
+std::optional<Evidence> evidence_with(const GridViews& views, const Rig& guess, const RightOf& right_of,
                                       const std::function<std::size_t(std::size_t)>& partner) {
   constexpr std::size_t kMostPairs = 16;
   std::vector<GridPair> trial;
@@ -51,7 +51,7 @@ std::optional<Evidence> evidence_with(const GridViews& views, const RightOf& rig
   }
   if (trial.size() < kFewestPairs) return std::nullopt;
   try {
-    return evidence_of(views.shape, views.width, views.height, trial);
+    return evidence_of(views.shape, trial, guess);
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }
@@ -59,17 +59,18 @@ std::optional<Evidence> evidence_with(const GridViews& views, const RightOf& rig
 
 }  // namespace
 
-std::optional<Misarrangement> find_misarrangement(const GridViews& views) {
+std::optional<Misarrangement> find_misarrangement(const GridViews& views, const Rig& rig) {
   constexpr double kFits = 2;
   const Eigen::Matrix2d quarter{{0, -1}, {1, 0}};
   const RightOf as_is = turned(views.shape, Eigen::Matrix2d::Identity());
   const auto same = [](std::size_t picture) { return picture; };
   std::optional<Misarrangement> best;
   double least = kFits;
+  Rig guess = rig;
   const auto attempt = [&](const RightOf& right_of, const auto& partner, const char* cause,
                            const std::string& cure) {
-    const auto evidence = evidence_with(views, right_of, partner);
-    if (!evidence || evidence->ratio() >= least) return;
+    const auto evidence = evidence_with(views, guess, right_of, partner);
+    if (!evidence || !(evidence->ratio() < least)) return;
     least = evidence->ratio();
     best = Misarrangement{cause, cure, evidence->rig_rms_px};
   };
@@ -79,8 +80,6 @@ std::optional<Misarrangement> find_misarrangement(const GridViews& views) {
   for (const Eigen::Matrix2d& turn : {quarter, Eigen::Matrix2d(quarter.transpose())})
     attempt(turned(views.shape, turn), same, "one camera is turned by 90 degrees against the other",
             "turn the camera back, and take the pictures again");
-  attempt(mirrored(views.shape, views.width), same, "the pictures of one camera are mirrored",
-          "mirror them, left to right");
   for (const std::size_t shift : {1U, 2U, 3U}) {
     const char* const cause = "the pictures are paired wrongly";
     const char* const cure = "leave out the first {} of the {} pictures, and as many {} ones at the end";
@@ -94,6 +93,11 @@ std::optional<Misarrangement> find_misarrangement(const GridViews& views) {
   attempt(
       as_is, [&views](std::size_t picture) { return views.pictures - 1 - picture; },
       "the pictures of one camera are in reverse order", "name them in the order of the others");
+  CameraModel& camera = guess.right;
+  camera.matrix(0, 2) = views.width - 1 - camera.matrix(0, 2);
+  camera.distortion[3] = -camera.distortion[3];  // p2
+  attempt(mirrored(views.shape, views.width), same, "the pictures of one camera are mirrored",
+          "mirror them, left to right");
   return best;
 }
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib/arrangement.h"
 #include "calib/depth.h"
+#include "calib/determine_rig.h"
 #include "calib/grid.h"
 #include "calib/opencv_conversions.h"
 
@@ -40,123 +40,17 @@ void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
       reasons));
 }
 
-[[noreturn]] void refuse(const std::string& cause) { throw std::invalid_argument("refused: " + cause); }
-
-// Names the pairs that fit worst.
-std::string worst_pairs(const CalibrationRequest& request, const CalibrationResult& result,
-                        const RigFit& fit) {
-  constexpr std::size_t kMost = 3;
-  std::vector<std::pair<double, std::size_t>> misfits;
-  for (std::size_t i = 0; i < fit.misfits.size(); ++i) {
-    double squares = 0;
-    for (const std::vector<double>* side : {&fit.misfits[i].left, &fit.misfits[i].right})
-      for (const double distance : *side) squares += distance * distance;
-    misfits.emplace_back(std::sqrt(squares / (2.0 * request.grid.corners())), i);
-  }
-  std::sort(misfits.rbegin(), misfits.rend());
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kMost, misfits.size()); ++i) {
-    const PicturePair& pair = request.pictures[result.pairs[misfits[i].second].picture];
-    text += fmt::format("{}'{}' and '{}' {:.1f} px", i == 0 ? "" : ", ", pair.left_name, pair.right_name,
-                        misfits[i].first);
-  }
-  return text;
-}
-
-// The rig does not explain what its cameras see: says what was measured, and why if that is found.
-[[noreturn]] void refuse_misfit(const CalibrationRequest& request, const CalibrationResult& result,
-                                const RigFit& fit) {
-  GridViews views{request.grid, fit.rig.width, fit.rig.height, request.pictures.size(), {}, {}};
-  for (const CalibratedPair& pair : result.pairs) {
-    views.numbers.push_back(pair.picture);
-    views.pairs.push_back(pair.corners);
-  }
-  const std::string measured = fmt::format("each camera alone fits to {:.2f} px, the rig to {:.1f} px",
-                                           fit.evidence.alone_rms_px, fit.evidence.rig_rms_px);
-  if (const auto mistake = find_misarrangement(views)) {
-    refuse(fmt::format("{}: {}, and to {:.2f} px if that is undone: {}", mistake->cause, measured,
-                       mistake->rig_rms_px, mistake->cure));
-  }
-  refuse(
-      fmt::format("the two pictures of a pair do not show the grid at the same place: {}; worst {}: take "
-                  "both pictures of a "
-                  "pair at the same time, of a grid that stands still, with two cameras on one bar",
-                  measured, worst_pairs(request, result, fit)));
-}
-
-void check_places(const Rig& rig) {
-  const Eigen::Vector3d& t = rig.translation;
-  constexpr double kLeastBaseline = 1;  // mm
-  constexpr double kMostFactor = 1.5;   // of the focal lengths
-  if (t.norm() < kLeastBaseline) {
-    refuse(fmt::format(
-        "the cameras are {:.2f} mm apart: they must stand in two places: are the pictures of two cameras?",
-        t.norm()));
-  }
-  const double factor = rig.left.matrix(0, 0) / rig.right.matrix(0, 0);
-  if (std::max(factor, 1 / factor) > kMostFactor) {
-    refuse(
-        fmt::format("the focal lengths are {:.0f} and {:.0f} px: two cameras of one kind are needed, and "
-                    "grids that are tilted by 20 to 40 degrees, near and far",
-                    rig.left.matrix(0, 0), rig.right.matrix(0, 0)));
-  }
-  const double roll = kDegrees * std::atan2(rig.rotation(1, 0), rig.rotation(0, 0));
-  if (std::abs(roll) > 45) {
-    refuse(
-        fmt::format("one camera is turned by {:.0f} degrees about its axis against the other: both must be "
-                    "upright",
-                    std::abs(roll)));
-  }
-  if (std::abs(t.y()) > std::abs(t.x())) {
-    refuse(
-        fmt::format("the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
-                    "stand side by side; pictures that are turned by 90 degrees must be turned back",
-                    std::abs(t.y()), t.y() > 0 ? "above" : "below", std::abs(t.x())));
-  }
-  if (t.x() > 0) {
-    refuse(fmt::format(
-        "the cameras are swapped: what should be the left one stands {:.1f} mm to the right of the "
-        "other: exchange left and right pictures (if both cameras are upside down, turn them instead)",
-        t.x()));
-  }
-}
-
-// What no pictures without tilt can tell. Their sigmas are small, and wrong.
-void check_tilt(const RigFit& fit, const Certainty& certainty) {
-  constexpr double kLeastTilt = 3;    // degrees
-  constexpr double kMostSigma = 0.1;  // of the focal length
-  const double focal = fit.rig.left.matrix(0, 0);
-  if (certainty.tilt_deg >= kLeastTilt && certainty.focal_sigma_px <= kMostSigma * focal) return;
-  refuse(fmt::format(
-      "the grid is tilted by {:.1f} degrees at most, and one sigma of the focal length, {:.0f} px, "
-      "is {:.0f} px: the focal lengths are not determined: take pairs with the grid tilted by 20 "
-      "to 40 degrees, near and far",
-      certainty.tilt_deg, focal, certainty.focal_sigma_px));
-}
-
 // What no offset can mend.
 void check_disparities(const Rig& rig, const DisparityRange& range) {
   constexpr int kMost = 254;
   if (range.needed() <= kMost) return;
-  const double inwards = kDegrees * std::atan2(rig.rotation(0, 2), rig.rotation(2, 2));
-  refuse(fmt::format(
-      "the grid's disparities are {:.0f} .. {:.0f}, {} of them, and a board has {} at most: the "
-      "cameras are turned by {:.0f} degrees against each other to the side: turn them parallel, or "
-      "photograph the grid farther away",
-      range.min, range.max, range.needed(), kMost, std::abs(inwards)));
-}
-
-// Whether the pictures determine the lens models. A model that does not map directions one to one in the
-// whole picture folds it over, which no lens does.
-bool lenses_are_determined(const Rig& rig) try {
-  for (const CameraModel& lens : {rig.left, rig.right}) {
-    for (const int row : {0, rig.height - 1}) {
-      for (const int column : {0, rig.width - 1}) lens.direction({column, row});
-    }
-  }
-  return true;
-} catch (const std::domain_error&) {
-  return false;
+  const double turn = kDegrees * std::atan2(rig.rotation(0, 2), rig.rotation(2, 2));
+  throw std::invalid_argument(fmt::format(
+      "refused: the grid's disparities are {:.0f} .. {:.0f}, {} of them, and a board has {} at most: one "
+      "camera "
+      "is turned to the side by {:.0f} degrees against the other: turn them parallel, or photograph the grid "
+      "farther away",
+      range.min, range.max, range.needed(), kMost, std::abs(turn)));
 }
 
 // Adds the errors of depths at the nearest, the middle and the farthest disparity of the board.
@@ -264,24 +158,17 @@ double between(double before, double largest, double after) {
 CalibrationResult calibrate(const CalibrationRequest& request) {
   CalibrationResult result;
   find_grids(request, result);
-  std::vector<GridPair> corners;
-  for (const CalibratedPair& pair : result.pairs) corners.push_back(pair.corners);
-  RigFit fit;
-  for (const Lens lens : {Lens::kFull, Lens::kWithoutK3}) {
-    const kernels::GrayImage& first = request.pictures.front().left;
-    fit = fit_rig(request.grid, first.width, first.height, corners, lens);
-    if (lenses_are_determined(fit.rig)) break;
+  const kernels::GrayImage& first = request.pictures.front().left;
+  GridViews views{request.grid, first.width, first.height, request.pictures.size(), {}, {}, {}};
+  for (const CalibratedPair& pair : result.pairs) {
+    const PicturePair& pictures = request.pictures[pair.picture];
+    views.numbers.push_back(pair.picture);
+    views.names.push_back(fmt::format("'{}' and '{}'", pictures.left_name, pictures.right_name));
+    views.pairs.push_back(pair.corners);
   }
+  const DeterminedRig determined = determine_rig(views);
+  const RigFit& fit = determined.fit;
   result.lens = fit.lens;
-  const RigCovariance covariance_of_rig = covariance(fit, request.grid, corners);
-  const Certainty certainty = certainty_of(fit, covariance_of_rig);
-  check_tilt(fit, certainty);
-  if (fit.evidence.refutes()) refuse_misfit(request, result, fit);
-  check_places(fit.rig);
-  if (!lenses_are_determined(fit.rig)) {
-    refuse(
-        "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");
-  }
   result.left_out = fit.left_out;
 
   Calibration& made = result.calibration;
@@ -307,10 +194,10 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
                               : disparity_offset_for(quality.disparities, request.disparities);
   result.tables = tables(made.rig, made.rectification, made.disparity_offset);
   check_sources(result.tables, made.disparity_offset);
-  made.certainty = certainty;
-  add_depths(made, covariance_of_rig);
+  made.certainty = determined.certainty;
+  add_depths(made, determined.covariance);
   quality.found_again = found_again(request, result);
-  quality.held_out = held_out(request, fit, corners, result.lens);
+  quality.held_out = held_out(request, fit, views.pairs, result.lens);
   return result;
 }
 

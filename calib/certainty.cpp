@@ -14,6 +14,7 @@ constexpr int kCamera = 9;       // parameters of a camera
 constexpr int kThirdRadial = 8;  // k3 among them
 constexpr int kRotation = 18;    // the first of three
 constexpr int kTranslation = 21;
+constexpr double kOtherK3 = 0.1;  // one sigma of a k3 that is taken as 0
 // A step of a parameter that changes positions of points by far less than a pixel.
 double step_of(int parameter) {
   if (parameter >= kTranslation) return 1e-3;    // mm
@@ -108,17 +109,14 @@ RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::v
     }
     left_over += static_cast<int>(4 * count) - 6;
   }
-  // A large number in place of what is not fitted keeps it as it is.
+  const double variance = squares / left_over;
   if (fit.lens == Lens::kWithoutK3) {
-    for (const int k3 : {kThirdRadial, kCamera + kThirdRadial}) {
-      normal.row(k3).setZero();
-      normal.col(k3).setZero();
-      normal(k3, k3) = std::numeric_limits<double>::max();
-    }
+    for (const int k3 : {kThirdRadial, kCamera + kThirdRadial})
+      normal(k3, k3) += variance / (kOtherK3 * kOtherK3);
   }
   const Eigen::Matrix<double, kRigParameters, 1> scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   const RigCovariance scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return squares / left_over * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal());
+  return variance * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal());
 }
 
 Certainty certainty_of(const RigFit& fit, const RigCovariance& covariance) {

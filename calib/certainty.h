@@ -29,7 +29,7 @@ struct Certainty {
 };
 
 // The covariance of fx, fy, cx, cy, k1, k2, p1, p2, k3 of the left and the right camera, of the rotation
-// vector (rad) and of the translation (mm). Rows of what is not fitted are 0.
+// vector (rad) and of the translation (mm). Of a lens without k3, it is that of a k3 of 0 +- 0.1.
 constexpr int kRigParameters = 24;
 using RigCovariance = Eigen::Matrix<double, kRigParameters, kRigParameters>;
 RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::vector<GridPair>& pairs);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/rig.h"
@@ -39,7 +40,7 @@ struct Evidence {
 
   double ratio() const { return rig_rms_px / alone_rms_px; }
   // Whether the rig does not explain what its cameras see.
-  bool refutes() const { return has_few_pairs || (ratio() >= 3 && rig_rms_px >= 0.3); }
+  bool refutes() const { return has_few_pairs || (ratio() >= 3 && rig_rms_px >= 0.2); }
 };
 
 // The rig that explains the observed corners best (least squares).
@@ -69,9 +70,11 @@ inline constexpr std::size_t kFewestPairs = 3;
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
-// The evidence of all corners of all pairs, of which none is left out. Throws std::runtime_error if OpenCV
-// finds no rig.
-Evidence evidence_of(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs);
+// The evidence of all corners of all pairs, of which none is left out. The fits start at the cameras of
+// `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws std::runtime_error if
+// OpenCV finds no rig.
+std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
+                                    const Rig& guess);
 
 // One fit to the used corners, starting at the cameras of `guess`, whose lenses it may change unless they are
 // kept. Throws std::runtime_error if OpenCV finds no rig.
