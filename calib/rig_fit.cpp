@@ -160,19 +160,12 @@ Used pairs_that_agree(const Places& places, std::size_t corners) {
   return used;
 }
 
-double root_mean_square(const Misfit& misfit) {
-  double squares = 0;
-  for (const std::vector<double>* side : {&misfit.left, &misfit.right})
-    for (const double distance : *side) squares += distance * distance;
-  return std::sqrt(squares / (2.0 * static_cast<double>(misfit.left.size())));
-}
-
 // [pair]: how much worse the rig fits than the cameras alone do.
 std::vector<double> ratios_of_pairs(const RigFit& fit, const SingleFit& left, const SingleFit& right) {
   std::vector<double> ratios;
   for (std::size_t pair = 0; pair < fit.misfits.size(); ++pair) {
     const auto view = static_cast<int>(pair);
-    ratios.push_back(root_mean_square(fit.misfits[pair]) * std::sqrt(2.0) /
+    ratios.push_back(fit.misfits[pair].rms_px() * std::sqrt(2.0) /
                      std::hypot(left.view_rms_px.at<double>(view), right.view_rms_px.at<double>(view)));
   }
   return ratios;
@@ -354,6 +347,13 @@ Eigen::Isometry3d fitted_pose(const Rig& rig, const std::vector<Eigen::Vector3d>
 }
 
 }  // namespace
+
+double Misfit::rms_px() const {
+  double squares = 0;
+  for (const std::vector<double>* side : {&left, &right})
+    for (const double distance : *side) squares += distance * distance;
+  return std::sqrt(squares / static_cast<double>(left.size() + right.size()));
+}
 
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
               Lens lens, Lenses lenses) {

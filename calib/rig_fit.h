@@ -18,6 +18,7 @@ struct Misfit {
   std::vector<double> right;
 
   double of_corner(std::size_t corner) const { return std::max(left[corner], right[corner]); }
+  double rms_px() const;
 };
 
 // A corner that was left out because it does not fit.
