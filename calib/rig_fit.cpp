@@ -148,6 +148,12 @@ Places places_of(const SingleFit& left, const SingleFit& right) {
   return result;
 }
 
+// Whether most pairs can be of one rig at all.
+bool nearly_agree(const Places& places) {
+  constexpr double kMostShare = 0.1;  // of the distance of the grid
+  return median(places.errors) < kMostShare * median(places.distances);
+}
+
 // Returns which corners to use: all corners of the pairs in which the right camera is near its median
 // position relative to the left one, and none of the other pairs. A pair whose grid moved between its two
 // pictures would spoil the fit to all pairs.
@@ -274,6 +280,11 @@ RigFit fit_kept(const GridShape& shape, const std::vector<GridPair>& pairs, cons
   add_figures(fit);
   fit.evidence.alone_rms_px = std::max(alone.left.rms_px, alone.right.rms_px);
   fit.evidence.rig_rms_px = fit.stereo_rms_px;
+  for (std::size_t view = 0; view < alone.left.rotations.size(); ++view) {
+    const double cosine = to_pose(alone.left.rotations[view], alone.left.translations[view]).linear()(2, 2);
+    fit.evidence.tilt_deg =
+        std::max(fit.evidence.tilt_deg, kDegrees * std::acos(std::min(1.0, std::abs(cosine))));
+  }
   return fit;
 }
 
@@ -429,11 +440,9 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
 
 std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
                                     const Rig& guess) {
-  constexpr double kMostShare = 0.1;  // of the distance of the grid
   const Used all(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
   const SingleFits alone = fit_cameras(observations(shape, pairs, all), guess, Lens::kFull);
-  const Places places = places_of(alone.left, alone.right);
-  if (!(median(places.errors) < kMostShare * median(places.distances))) return std::nullopt;
+  if (!nearly_agree(places_of(alone.left, alone.right))) return std::nullopt;
   return fit_kept(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull).evidence;
 }
 
