@@ -157,14 +157,13 @@ bool has_arrays() {
 
 // Sets what the options say of the run. `pairs`: the length of the source of pictures.
 void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& input) {
-  const bool has_end =
-      options.pictures.sequence.is_given() || options.pictures.video.is_given() || has_arrays();
   input.camera = options.source.is_camera();
   input.fast = options.fidelity.text() != "cycle";
   input.timing_only = options.timing_only.is_given();
   input.recorded_frames = options.recorded_frames();
   input.json = options.json.is_given();
-  input.frames = options.frames.number<std::uint64_t>().value_or(has_end ? pairs : 1);
+  input.frames =
+      options.frames.number<std::uint64_t>().value_or(pairs == runs::PairSource::kEndless ? 1 : pairs);
   runs::RecordedOptions& run = input.described;
   run.program_version = process::kVersion;
   run.source = input.camera ? "camera" : "preloaded";
@@ -323,8 +322,8 @@ std::vector<std::string> PictureOptions::sources_given() const {
 
 runs::InputPictures PictureOptions::named() const {
   runs::InputPictures pictures;
-  if (left.is_given()) pictures.left = {left.text(), ""};
-  if (right.is_given()) pictures.right = {right.text(), ""};
+  if (left.is_given()) pictures.left = {{left.text(), ""}};
+  if (right.is_given()) pictures.right = {{right.text(), ""}};
   if (sequence.is_given()) pictures.sequence = {sequence.text(), {}};
   for (const std::string& file : video.texts()) pictures.video.push_back({file, ""});
   pictures.video_layout = video_layout.text();

@@ -126,8 +126,9 @@ struct PictureOptions {
 
   Options* of;
   Option left = Option(of, "--left", "F",
-                       "The left picture of one pair for every frame, 8-bit, as large as the board's images");
-  Option right = Option(of, "--right", "F", "The right picture");
+                       "The left picture, or a quoted pattern of several ('left/*.png'), shown in natural "
+                       "order (2 before 10); 8-bit, as large as the board's images");
+  Option right = Option(of, "--right", "F", "The right picture, or as many, in the same order");
   Option sequence = Option(of, "--sequence", "DIR",
                            "A folder of pairs left_*.png and right_*.png, shown in the order of their names");
   Option video = Option(of, "--video", "F [F2]", "A video of pairs, or two videos, the left one first", {},
@@ -168,7 +169,7 @@ struct RunOptions {
       of, "--frames", "N",
       "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows pair f "
       "modulo "
-      "the number of pairs (default 1; with --sequence and --video as many as there are pairs)",
+      "the number of pairs (default: as many as there are pairs, 1 with --synthetic)",
       {number<std::uint64_t>("an integer, 1 or more", [](std::uint64_t count) { return count > 0; })});
   SourceOption source{
       of,

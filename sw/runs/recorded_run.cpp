@@ -35,8 +35,8 @@ struct RecordedFile {
 std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
   std::vector<RecordedFile> files;
   const auto add = [&files](const char* option, const InputFile& file) { files.push_back({option, file}); };
-  if (options.left) add("--left", *options.left);
-  if (options.right) add("--right", *options.right);
+  for (const InputFile& file : options.left) add("--left", file);
+  for (const InputFile& file : options.right) add("--right", file);
   if (options.sequence) {
     for (const InputFile& file : options.sequence->files)
       add("--sequence", {(fs::path(options.sequence->path) / file.path).string(), file.sha256});

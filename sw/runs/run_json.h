@@ -27,8 +27,8 @@ struct InputFolder {
 
 // The pictures of a run. At most one source is there: a pair, a sequence, a video or a synthetic scene.
 struct InputPictures {
-  std::optional<InputFile> left;
-  std::optional<InputFile> right;
+  std::vector<InputFile> left;   // that of one pair, or those of a sequence of pairs
+  std::vector<InputFile> right;  // as many
   std::optional<InputFolder> sequence;
   std::vector<InputFile> video;
   std::string video_layout;                // only with a video

@@ -11,6 +11,7 @@
 #include "sw/files/text_forms.h"
 #include "sw/media/synthetic_scene.h"
 #include "sw/process/client.h"
+#include "sw/runs/sources/pair_files.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -95,9 +96,56 @@ InputFile described_file(const std::string& path) {
 
 // The following functions open a source. They throw std::runtime_error, without the name of the option.
 
+// The pictures of one side.
+struct Side {
+  std::vector<InputFile> files;
+  std::vector<GrayImage> kept;  // pictures of the first files
+  std::size_t converted = 0;    // pictures that were in colour
+};
+
+// Reads every file once. The first pictures are kept in memory, up to half of kMostKeptBytes.
+Side read_side(const std::string& option, const std::vector<std::string>& paths,
+               const platform::BoardConfig* board, OpenedSource& opened) {
+  Side side;
+  std::size_t kept_bytes = 0;
+  for (const std::string& path : paths) {
+    const NamedFile& file = opened.files.emplace_back(NamedFile{option, path});
+    media::LoadedGray picture = media::load_gray(path);
+    check_size(path, picture.image.width, picture.image.height, board);
+    side.converted += picture.converted_from_colour ? 1U : 0U;
+    for (const std::string& note : picture.notes) opened.notes.push_back(file.text() + ": " + note);
+    side.files.push_back(described_file(path));
+    kept_bytes += picture.image.pixels.size();
+    if (kept_bytes <= kMostKeptBytes / 2) side.kept.push_back(std::move(picture.image));
+  }
+  return side;
+}
+
+void note_converted(const std::string& named, std::size_t converted, std::size_t pictures,
+                    OpenedSource& opened) {
+  const std::string count = pictures == 1 ? "" : fmt::format("{} of {} pictures: ", converted, pictures);
+  if (converted > 0) opened.notes.push_back(fmt::format("{}: {}colour, converted to grey", named, count));
+}
+
+// Pictures that are not kept are decoded again at each use. One pair is read only once.
+std::unique_ptr<PairSource> pairs_of(const std::string& option, Side left, Side right) {
+  const std::size_t length = left.files.size();
+  const auto picture = [](const Side& side, std::size_t number) {
+    if (side.files.size() == 1) return side.kept.front();
+    const auto& [path, sha256] = side.files[number];
+    if (files::sha256_file(path) != sha256)
+      throw std::runtime_error(fmt::format("'{}': changed: a picture must not change during a run", path));
+    return number < side.kept.size() ? side.kept[number] : media::load_gray(path).image;
+  };
+  return std::make_unique<PairSource>(
+      option, length, [picture, left = std::move(left), right = std::move(right)](std::uint64_t index) {
+        const auto number = static_cast<std::size_t>(index);
+        return host::StereoPair{picture(left, number), picture(right, number)};
+      });
+}
+
 // The pairs of `--sequence DIR`: left_*.png and right_*.png with the same `*`, sorted by the bytes of their
-// names. Other files in the folder are ignored. Every picture is read once. The first pictures are kept in
-// memory, up to 128 MB. The others are decoded again at each use.
+// names. Other files in the folder are ignored.
 std::unique_ptr<PairSource> open_sequence(InputFolder& sequence, const platform::BoardConfig* board,
                                           OpenedSource& opened) {
   const std::string folder = sequence.path;
@@ -110,42 +158,48 @@ std::unique_ptr<PairSource> open_sequence(InputFolder& sequence, const platform:
     throw std::runtime_error(
         fmt::format("'{}': no pictures: a sequence must have pairs left_*.png and right_*.png", folder));
   }
-  std::vector<GrayImage> kept;  // pictures of the first files
-  std::size_t kept_bytes = 0;
-  std::size_t converted = 0;
+  const auto read = [&](const char* beginning) {
+    std::vector<std::string> paths;
+    for (const std::string& stem : left)
+      paths.push_back((fs::path(folder) / (beginning + stem + kSuffix)).string());
+    return read_side("--sequence", paths, board, opened);
+  };
+  Side lefts = read(kLeft);
+  Side rights = read(kRight);
   sequence = {fs::absolute(folder).string(), {}};
-  for (const std::string& stem : left) {
-    for (const char* beginning : {kLeft, kRight}) {
-      const std::string name = beginning + stem + kSuffix;
-      const std::string path = (fs::path(folder) / name).string();
-      media::LoadedGray picture = media::load_gray(path);
-      check_size(path, picture.image.width, picture.image.height, board);
-      converted += picture.converted_from_colour ? 1U : 0U;
-      for (const std::string& note : picture.notes)
-        opened.notes.push_back(fmt::format("--sequence '{}': {}", path, note));
-      sequence.files.push_back({name, files::sha256_file(path)});
-      opened.files.push_back({"--sequence", path});
-      kept_bytes += picture.image.pixels.size();
-      if (kept_bytes <= kMostKeptBytes) kept.push_back(std::move(picture.image));
-    }
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    for (const Side* side : {&lefts, &rights})
+      sequence.files.push_back({fs::path(side->files[i].path).filename(), side->files[i].sha256});
   }
-  if (converted > 0) {
-    opened.notes.push_back(fmt::format("--sequence '{}': {} of {} pictures: colour, converted to grey",
-                                       folder, converted, sequence.files.size()));
-  }
-  return std::make_unique<PairSource>(
-      "--sequence", left.size(), [sequence, kept = std::move(kept)](std::uint64_t index) {
-        const auto load = [&](std::size_t number) {
-          const InputFile& file = sequence.files[number];
-          const std::string path = (fs::path(sequence.path) / file.path).string();
-          if (files::sha256_file(path) != file.sha256)
-            throw std::runtime_error(
-                fmt::format("'{}': changed: a picture must not change during a run", path));
-          return number < kept.size() ? kept[number] : media::load_gray(path).image;
-        };
-        const auto first = static_cast<std::size_t>(2 * index);  // left and right in turn
-        return host::StereoPair{load(first), load(first + 1)};
-      });
+  note_converted(fmt::format("--sequence '{}'", folder), lefts.converted + rights.converted,
+                 sequence.files.size(), opened);
+  return pairs_of("--sequence", std::move(lefts), std::move(rights));
+}
+
+// The pairs of --left and --right.
+std::unique_ptr<PairSource> open_pairs(InputPictures& pictures, const platform::BoardConfig* board,
+                                       OpenedSource& opened, process::Problems& problems) {
+  const auto paths_of = [](const std::vector<InputFile>& files) {
+    std::vector<std::string> paths;
+    for (const InputFile& file : files) paths.push_back(file.path);
+    return paths;
+  };
+  const PairFiles found = find_pairs(paths_of(pictures.left), paths_of(pictures.right), problems);
+  opened.notes = found.notes;
+  const auto read = [&](const std::string& option, const std::vector<std::string>& paths,
+                        std::vector<InputFile>& side) {
+    Side result;
+    const std::string named = NamedFile{option, side.front().path}.text();
+    const bool is_read =
+        problems.attempt(option + ' ', [&] { result = read_side(option, paths, board, opened); });
+    if (is_read) side = result.files;
+    note_converted(named, result.converted, paths.size(), opened);
+    return result;
+  };
+  Side left = read("--left", found.left, pictures.left);
+  Side right = read("--right", found.right, pictures.right);
+  if (left.files.empty() || left.files.size() != right.files.size()) return nullptr;
+  return pairs_of("--left, --right", std::move(left), std::move(right));
 }
 
 // The pairs of `--video F [F2] --video-layout L`. Decodes each video once. Adds a note to `opened` for a
@@ -256,28 +310,8 @@ std::unique_ptr<PairSource> pairs_of_client(const platform::BoardConfig& board) 
 OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* board,
                          process::Problems& problems) {
   OpenedSource opened;
-  const auto load_side = [&](const std::string& option, InputFile& input) {
-    const NamedFile file = {option, input.path};
-    opened.files.push_back(file);
-    GrayImage image;
-    problems.attempt(option + ' ', [&] {
-      media::LoadedGray loaded = media::load_gray(file.path);
-      if (loaded.converted_from_colour) opened.notes.push_back(file.text() + ": colour, converted to grey");
-      for (const std::string& note : loaded.notes) opened.notes.push_back(file.text() + ": " + note);
-      check_size(file.path, loaded.image.width, loaded.image.height, board);
-      input = described_file(file.path);
-      image = std::move(loaded.image);
-    });
-    return image;
-  };
-  if (pictures.left && pictures.right) {
-    host::StereoPair pair;
-    pair.left = load_side("--left", *pictures.left);
-    pair.right = load_side("--right", *pictures.right);
-    if (!pair.left.pixels.empty() && !pair.right.pixels.empty())
-      opened.pairs = std::make_unique<PairSource>(
-          "--left", 1, [pair = std::move(pair)](std::uint64_t /*index*/) { return pair; });
-  }
+  if (!pictures.left.empty() && !pictures.right.empty())
+    opened.pairs = open_pairs(pictures, board, opened, problems);
   if (pictures.sequence) {
     problems.attempt("--sequence ", [&] { opened.pairs = open_sequence(*pictures.sequence, board, opened); });
   }

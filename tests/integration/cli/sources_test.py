@@ -95,6 +95,45 @@ class Sequence(SourceTest):
         refused("right_01.png", "left_01.png")
 
 
+class Patterns(SourceTest):
+    def sides(self, *names):
+        """Patterns of pairs with these names."""
+        for number, name in enumerate(names):
+            for side in ("left", "right"):
+                self.file(f"{side}/{name}", self.picture(number, side))
+        return ["--left", self.folder / "left" / "*.png", "--right", self.folder / "right" / "*.png"]
+
+    def test_pairs_are_shown_in_natural_order_and_recorded(self):
+        self.shows_pairs(4, *self.sides("a8_1.png", "a09_1.png", "a10_1.png", "a11_1.png"))
+        recorded = self.run_json()["right"]
+        self.assertEqual([entry["path"] for entry in recorded],
+                         [f"{self.folder}/right/a{number}_1.png" for number in ("8", "09", "10", "11")])
+        self.succeeds(run("diff", self.out, self.out))  # repeats the run
+        shutil.copy(self.left, self.folder / "right" / "a10_1.png")
+        self.refused(run("diff", self.out, self.out), "right/a10_1.png': SHA-256")
+
+    def test_what_is_left_out_is_said(self):
+        sources = self.sides("x0.png", "x5.png", "x10.png", "x20.png")
+        self.file("left/x15.PNG")
+        left, right = self.folder / "left", self.folder / "right"
+        gap = "{0}: '{1}/x20.png' follows '{1}/x10.png': numbers between them are missing"
+        ending = f"--left '{left}/*.png': '{left}/x15.PNG' is left out: the case of the ending differs"
+        gaps = [gap.format("--left", left), gap.format("--right", right)]
+
+        def said():
+            process = self.run_with(*sources)
+            self.succeeds(process)
+            return process.stderr.replace("stereotlm: note: ", "").splitlines()
+
+        self.assertEqual(said(), [ending, *gaps])
+        (right / "x20.png").rename(right / "x15.png")
+        pairing = f"'{left}/x20.png' with '{right}/x15.png': do they belong together?"
+        self.assertEqual(said(), [ending, gaps[0], f"pictures are paired in the order of their names, {pairing}"])
+        for pattern, *texts in (("*.jpg", "*.jpg': no such file"), ("*.Png", "x0.png' and 3 more are left out"),
+                                ("x1*.png", "4 left pictures", "2 right ones", "must be as many")):
+            self.refused_in_one_line(self.run_with(*sources[:3], right / pattern), *texts)
+
+
 class Video(SourceTest):
     def video(self, name, length, *sides, below=False):
         """A video of the pictures of these sides, beside or below each other."""
