@@ -82,12 +82,13 @@ bool lies_in(const fs::path& inner, const fs::path& folder) {
   return !no_inner && !no_folder && *inside.begin() != "..";
 }
 
-void load_truth(const RunOptions& options, const platform::BoardConfig* board, runs::OpenedSource& source,
+// `frame`: the last one.
+void load_truth(const RunOptions& options, std::uint64_t frame, runs::OpenedSource& source,
                 runs::RunInput& input, process::Problems& problems) {
   if (!options.truth.file.is_given()) return;
   const runs::NamedFile file = {"--truth", options.truth.file.text()};
   source.files.push_back(file);
-  input.truth = runs::open_truth(file, options.truth.scale(), board, problems);
+  input.truth = runs::open_truth(file, options.truth.scale(), source, frame, problems);
   if (input.truth)
     problems.attempt("--truth ", [&] {
       input.described.truth = {fs::absolute(file.path).string(), files::sha256_file(file.path)};
@@ -155,15 +156,13 @@ bool has_arrays() {
   return process::client->given("right") != nullptr || has_left;
 }
 
-// Sets what the options say of the run. `pairs`: the length of the source of pictures.
-void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& input) {
+// Sets what the options say of the run.
+void describe(const RunOptions& options, runs::RunInput& input) {
   input.camera = options.source.is_camera();
   input.fast = options.fidelity.text() != "cycle";
   input.timing_only = options.timing_only.is_given();
   input.recorded_frames = options.recorded_frames();
   input.json = options.json.is_given();
-  input.frames =
-      options.frames.number<std::uint64_t>().value_or(pairs == runs::PairSource::kEndless ? 1 : pairs);
   runs::RecordedOptions& run = input.described;
   run.program_version = process::kVersion;
   run.source = input.camera ? "camera" : "preloaded";
@@ -328,6 +327,7 @@ runs::InputPictures PictureOptions::named() const {
   for (const std::string& file : video.texts()) pictures.video.push_back({file, ""});
   pictures.video_layout = video_layout.text();
   pictures.synthetic = synthetic.number<std::uint64_t>();
+  pictures.fit = fit.text();
   return pictures;
 }
 
@@ -341,6 +341,10 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
   trace.check_together(problems);
   if (truth.file.is_given() && pictures.synthetic.is_given())
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
+  if (pictures.fit.is_given() && board.calibration.is_given())
+    problems.add("--fit: does not go with --calibration, whose tables are for pictures of the board's size");
+  if (pictures.fit.is_given() && pictures.synthetic.is_given())
+    problems.add("--fit: does not go with --synthetic, whose scene has the board's size");
   for (const auto& [name, given] :
        {std::pair("--truth", truth.file.is_given()), std::pair("--save-frames", save_frames.is_given())}) {
     if (timing_only.is_given() && given)
@@ -367,12 +371,14 @@ runs::RunInput RunOptions::load() const {
   const platform::BoardConfig* const its = loaded.board ? &*loaded.board : nullptr;
   runs::InputPictures& named = input.described;
   named = pictures.named();
-  problems.attempt("", [&] { opened = runs::open_source(named, its, problems); });
-  if (has_arrays() && its != nullptr)
-    problems.attempt("", [&] { opened.pairs = runs::pairs_of_client(*its); });
+  problems.attempt("",
+                   [&] { opened = runs::open_source(named, its, problems, board.calibration.is_given()); });
+  if (has_arrays() && its != nullptr) problems.attempt("", [&] { runs::open_arrays(opened); });
   if (calibration)
     opened.files.insert(opened.files.end(), calibration->files.begin(), calibration->files.end());
-  load_truth(*this, its, opened, input, problems);
+  const std::uint64_t pairs = opened.pairs ? opened.pairs->length() : 1;
+  input.frames = frames.number<std::uint64_t>().value_or(pairs == runs::PairSource::kEndless ? 1 : pairs);
+  load_truth(*this, input.frames - 1, opened, input, problems);
   process::catch_interrupts();
   input.inputs = opened.files;
   input.inputs.push_back({"BOARD", board.argument.text()});
@@ -390,7 +396,7 @@ runs::RunInput RunOptions::load() const {
     }
     if (has_arrays() && input.folder && !input.timing_only)
       named.sequence = runs::keep_pictures(*opened.pairs, *input.folder);
-    describe(*this, opened.pairs ? opened.pairs->length() : 1, input);
+    describe(*this, input);
   });
   trace.check_window(input.board, input.frames, problems);
   problems.check();

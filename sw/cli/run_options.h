@@ -142,6 +142,11 @@ struct PictureOptions {
       Option(of, "--synthetic", "SEED",
              "A synthetic moving scene with known disparities; another one for each SEED, 0 or more",
              {number<std::uint64_t>(kSeedRule)});
+  Option fit =
+      Option(of, "--fit", "crop|pad",
+             "Take pictures of another size than the board's images: crop takes the middle of larger "
+             "ones, pad repeats the last column and row of smaller ones; truth alike",
+             {one_of(media::kFitNames)});
 };
 
 // The options of `run`. Those that say what is simulated are options of `conflicts` too.

@@ -197,7 +197,8 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   for (const RecordedFile& each : inputs_of(run.options))
     input.inputs.push_back({each.option, each.file.path});
   auto pictures = static_cast<const InputPictures&>(run.options);
-  input.pairs = open_source(pictures, &run.board, found).pairs;
+  OpenedSource source = open_source(pictures, &run.board, found);
+  input.pairs = std::move(source.pairs);
   const std::size_t pairs = pictures.sequence ? pictures.sequence->files.size() / 2 : 0;
   const std::size_t recorded = pictures.sequence ? run.options.sequence->files.size() / 2 : 0;
   if (input.pairs && pairs != recorded)
@@ -209,8 +210,8 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
     calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
   found.attempt("", [&] { input.tables = tables_of(run.board, calibration); });
   if (run.options.truth)
-    input.truth =
-        open_truth({"--truth", run.options.truth->path}, run.options.truth_scale, &run.board, found);
+    input.truth = open_truth({"--truth", run.options.truth->path}, run.options.truth_scale, source,
+                             input.frames - 1, found);
   if (!found.empty()) problems.add(fmt::format("{}: {}", name_of(run), found.in_one_line()));
   return input;
 }

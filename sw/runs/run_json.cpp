@@ -149,6 +149,7 @@ void each_key(Document& document, Options& options) {
   document.given("video", options.video, !options.video.empty());
   document.given("video_layout", options.video_layout, !options.video.empty());
   document.given("synthetic", options.synthetic);
+  document.given("fit", options.fit, !options.fit.empty());
   document.given("calibration", options.calibration);
   document.given("truth", options.truth);
   document.given("truth_scale", options.truth_scale, options.truth.has_value());
@@ -168,6 +169,8 @@ void check(const RecordedOptions& options) {
           fmt::format("fidelity = {}: must be fast or cycle", options.fidelity));
   require(options.frames > 0, "frames = 0: must be 1 or more");
   require(options.left.size() == options.right.size(), "left and right: must be as many");
+  require(options.fit.empty() || options.fit == "crop" || options.fit == "pad",
+          fmt::format("fit = {}: must be crop or pad", options.fit));
   const int sources = int{!options.left.empty()} + int{options.sequence.has_value()} +
                       int{!options.video.empty()} + int{options.synthetic.has_value()};
   require(sources == 1 || (sources == 0 && options.timing_only),

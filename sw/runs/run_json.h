@@ -32,6 +32,7 @@ struct InputPictures {
   std::optional<InputFolder> sequence;
   std::vector<InputFile> video;
   std::string video_layout;                // only with a video
+  std::string fit;                         // of --fit, or empty
   std::optional<std::uint64_t> synthetic;  // the seed
 };
 

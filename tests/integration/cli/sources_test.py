@@ -183,6 +183,52 @@ class Video(SourceTest):
         self.assertEqual(self.stats()["frames"], 2)
 
 
+class Fit(SourceTest):
+    def pair_of(self, name, width, height, change):
+        """Files of a pair of this size and of its truth. `change`: of the rows of each."""
+        paths = []
+        for side in ("left", "right", "truth"):
+            pixels = noise(width, height, {"left": 1, "right": 2, "truth": 3}[side])
+            rows = change([pixels[y * width : (y + 1) * width] for y in range(height)], side)
+            paths += [f"--{side}", self.file(f"{name}_{side}.pgm", pgm(len(rows[0]), len(rows), b"".join(rows)))]
+        return paths
+
+    def equal(self, fit, width, height, change):
+        """What a board makes of pictures that it fits, and of those that are fitted before."""
+        fitted = self.pair_of("fitted", width, height, change)
+        self.succeeds(self.run_with(*fitted, "--out", self.out))
+        expected = [self.stats(), (self.out / "disparity.png").read_bytes()]
+        raw = self.pair_of("raw", width, height, lambda rows, side: rows)
+        self.refused(self.run_with(*raw), "raw_left.pgm'", f"add --fit {fit}, or --set")
+        self.succeeds(self.run_with(*raw, "--fit", fit, "--out", self.out, "--verify"))
+        self.assertEqual([self.stats(), (self.out / "disparity.png").read_bytes()], expected)
+        self.assertEqual(self.run_json()["fit"], fit)
+        self.succeeds(run("diff", self.out, self.out))  # repeats the run, with its truth
+        return raw
+
+    def test_crop_takes_the_middle(self):
+        raw = self.equal("crop", 35, 26, lambda rows, side: [row[1:33] for row in rows[1:25]])
+        small = self.pair_of("small", 34, 26, lambda rows, side: rows)
+        text = "pixels: must be as large as"
+        self.refused(self.run_with(*raw[:2], *small[2:4], "--fit", "crop"), f"34x26 {text} '{raw[1]}', 35x26")
+        self.refused(self.run_with(*raw[:4], *small[4:], "--fit", "crop"), f"{text} the left picture, 35x26")
+        self.refused(self.run_with(*raw[:4], "--fit", "pad"), "35x26 pixels: must be at most as large as")
+
+    def test_pad_repeats_the_last_column_and_row(self):
+        def padded(rows, side):
+            if side == "truth":
+                return [row + bytes(2) for row in rows] + 4 * [bytes(WIDTH)]
+            rows = [row + 2 * row[-1:] for row in rows]
+            return rows + 4 * rows[-1:]
+
+        self.equal("pad", 30, 20, padded)
+
+    def test_fit_is_refused_where_it_means_nothing(self):
+        rig, _ = program.made_rig()
+        self.refused(self.run_small("--fit", "pad", "--calibration", rig), "--fit: does not go with --calibration")
+        self.refused(self.run_with("--fit", "pad", "--synthetic", 1), "--fit: does not go with --synthetic")
+
+
 class Truth(SourceTest):
     def accuracy(self, *source):
         self.succeeds(self.run_with(*source, "--truth", self.left, "--out", self.out))
