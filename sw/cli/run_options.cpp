@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <regex>
@@ -100,6 +101,19 @@ void load_truth(const RunOptions& options, std::uint64_t frame, runs::OpenedSour
         source.pairs->length()));
 }
 
+void check_offset(const platform::BoardConfig& board, std::optional<int> offset,
+                  process::Problems& problems) {
+  if (!offset) return;
+  if (!board.allocation.left_lut)
+    problems.add(fmt::format(
+        "--disparity-offset = {}: allocation.left_lut = none: must be a board with a table of the left side, "
+        "which moves the picture, such as the preset fpl2003",
+        *offset));
+  if (std::abs(*offset) >= board.image.width)
+    problems.add(fmt::format("--disparity-offset = {}: must be less than the columns of the images, {}",
+                             *offset, board.image.width));
+}
+
 void open_traces(const RunOptions& options, runs::RunInput& input) {
   const std::vector<trace::TraceFile> files = options.trace.traces();
   if (files.empty()) return;
@@ -171,6 +185,7 @@ void describe(const RunOptions& options, runs::RunInput& input) {
   run.verify = options.verify.is_given();
   run.frames = input.frames;
   run.truth_scale = options.truth.scale().value_or(1);
+  run.disparity_offset = options.offset();
   run.save_frames = options.save_frames.is_given();
   run.record = options.record.is_given();
   run.no_record = options.no_record.is_given();
@@ -341,6 +356,8 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
   trace.check_together(problems);
   if (truth.file.is_given() && pictures.synthetic.is_given())
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
+  if (offset() && board.calibration.is_given())
+    problems.add("--disparity-offset: does not go with --calibration, whose tables have an offset already");
   if (pictures.fit.is_given() && board.calibration.is_given())
     problems.add("--fit: does not go with --calibration, whose tables are for pictures of the board's size");
   if (pictures.fit.is_given() && pictures.synthetic.is_given())
@@ -378,6 +395,10 @@ runs::RunInput RunOptions::load() const {
     opened.files.insert(opened.files.end(), calibration->files.begin(), calibration->files.end());
   const std::uint64_t pairs = opened.pairs ? opened.pairs->length() : 1;
   input.frames = frames.number<std::uint64_t>().value_or(pairs == runs::PairSource::kEndless ? 1 : pairs);
+  if (its != nullptr) {
+    check_offset(*its, offset(), problems);
+    if (problems.empty()) opened.truth_offset = runs::truth_offset(*its, calibration, offset().value_or(0));
+  }
   load_truth(*this, input.frames - 1, opened, input, problems);
   process::catch_interrupts();
   input.inputs = opened.files;
@@ -389,7 +410,7 @@ runs::RunInput RunOptions::load() const {
   problems.check();
   input.board = *loaded.board;
   problems.attempt("", [&] {
-    input.tables = runs::tables_of(input.board, calibration);
+    input.tables = runs::tables_of(input.board, calibration, offset().value_or(0));
     if (calibration) {
       input.calibration = calibration->calibration;
       input.described.calibration = calibration->described;

@@ -162,6 +162,9 @@ struct RunOptions {
   // process, which has not changed anything yet. Afterwards interrupts are caught (catch_interrupts()).
   runs::RunInput load() const;
 
+  // Of --disparity-offset, in columns; nullopt if it is not given.
+  std::optional<int> offset() const { return disparity_offset.number<int>(); }
+
   // The first frames whose waits are recorded; 0: none.
   std::uint64_t recorded_frames() const;
 
@@ -170,6 +173,12 @@ struct RunOptions {
   std::string beside_board = "";  // what BOARD may be beside a board
   BoardOptions board{of, beside_board};
   PictureOptions pictures{of};
+  Option disparity_offset =
+      Option(of, "--disparity-offset", "N",
+             "Columns that the left table subtracts from every disparity of rectified pairs, also below 0: "
+             "disparities N .. N+D-1 are found, and truth is that of the left picture as it is",
+             {number<int>("an integer, -8191..8191",
+                          [](int columns) { return columns > -8192 && columns < 8192; })});
   Option frames = Option(
       of, "--frames", "N",
       "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows pair f "

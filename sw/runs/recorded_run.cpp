@@ -208,7 +208,11 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   std::optional<CalibrationInput> calibration;
   if (run.options.calibration)
     calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
-  found.attempt("", [&] { input.tables = tables_of(run.board, calibration); });
+  found.attempt("", [&] {
+    const int offset = run.options.disparity_offset.value_or(0);
+    input.tables = tables_of(run.board, calibration, offset);
+    source.truth_offset = truth_offset(run.board, calibration, offset);
+  });
   if (run.options.truth)
     input.truth = open_truth({"--truth", run.options.truth->path}, run.options.truth_scale, source,
                              input.frames - 1, found);

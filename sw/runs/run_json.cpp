@@ -151,6 +151,7 @@ void each_key(Document& document, Options& options) {
   document.given("synthetic", options.synthetic);
   document.given("fit", options.fit, !options.fit.empty());
   document.given("calibration", options.calibration);
+  document.given("disparity_offset", options.disparity_offset);
   document.given("truth", options.truth);
   document.given("truth_scale", options.truth_scale, options.truth.has_value());
   document.given("save_frames", options.save_frames);
@@ -169,6 +170,8 @@ void check(const RecordedOptions& options) {
           fmt::format("fidelity = {}: must be fast or cycle", options.fidelity));
   require(options.frames > 0, "frames = 0: must be 1 or more");
   require(options.left.size() == options.right.size(), "left and right: must be as many");
+  require(!options.disparity_offset || !options.calibration,
+          "disparity_offset: does not go with calibration");
   require(options.fit.empty() || options.fit == "crop" || options.fit == "pad",
           fmt::format("fit = {}: must be crop or pad", options.fit));
   const int sources = int{!options.left.empty()} + int{options.sequence.has_value()} +

@@ -46,6 +46,7 @@ struct RecordedOptions : InputPictures {
   bool verify = false;  // also false if the comparison was interrupted
   std::uint64_t frames = 1;
   std::optional<InputCalibration> calibration;
+  std::optional<int> disparity_offset;  // only without a calibration
   std::optional<InputFile> truth;
   double truth_scale = 1;  // only with a truth
   bool save_frames = false;

@@ -71,7 +71,8 @@ std::optional<stats::Accuracy> accuracy_to_show(const RunInput& input, const Res
   if (accuracy || input.calibration || input.timing_only) return accuracy;
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
-  return stats::accuracy(last.disparity, *truth);
+  return stats::accuracy(last.disparity,
+                         media::with_offset(*truth, input.described.disparity_offset.value_or(0)));
 }
 
 // `accuracy`: against --truth.

@@ -362,7 +362,7 @@ std::optional<media::Truth> open_truth(const NamedFile& file, std::optional<doub
     if (!source.fit.name.empty() && !source.sizes.empty())
       check_same_size(file.path, size, "the left picture", source.sizes[frame % source.sizes.size()]);
     source.fit.check(fmt::format("'{}'", file.path), size);
-    loaded = source.fit.fitted(truth);
+    loaded = media::with_offset(source.fit.fitted(truth), source.truth_offset);
   });
   return loaded;
 }

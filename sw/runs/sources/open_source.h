@@ -81,6 +81,7 @@ using files::NamedFile;
 struct OpenedSource {
   media::Fit fit;
   std::unique_ptr<PairSource> pairs;  // null if it cannot be used
+  int truth_offset = 0;               // truth_offset() of the tables, set by the caller
   std::vector<media::Size> sizes;     // of the pairs before the fit, in turn; empty if they need none
   std::vector<NamedFile> files;       // files that were named or found, usable or not
   std::vector<std::string> notes;     // for standard error

@@ -1,7 +1,9 @@
 """Where the pictures of a run come from: sequences, videos, the synthetic scene."""
 
+import math
 import os
 import shutil
+import struct
 import subprocess
 
 import program
@@ -128,8 +130,10 @@ class Patterns(SourceTest):
         self.assertEqual(said(), [ending, *gaps])
         (right / "x20.png").rename(right / "x15.png")
         pairing = f"'{left}/x20.png' with '{right}/x15.png': do they belong together?"
-        self.assertEqual(said(), [ending, gaps[0], f"pictures are paired in the order of their names, {pairing}"])
-        for pattern, *texts in (("*.jpg", "*.jpg': no such file"), ("*.Png", "x0.png' and 3 more are left out"),
+        paired = f"pictures are paired in the order of their names, {pairing}"
+        self.assertEqual(said(), [ending, gaps[0], paired])
+        for pattern, *texts in (("*.jpg", "*.jpg': no such file"),
+                                ("*.Png", "x0.png' and 3 more are left out"),
                                 ("x1*.png", "4 left pictures", "2 right ones", "must be as many")):
             self.refused_in_one_line(self.run_with(*sources[:3], right / pattern), *texts)
 
@@ -186,17 +190,17 @@ class Video(SourceTest):
 class Fit(SourceTest):
     def pair_of(self, name, width, height, change):
         """Files of a pair of this size and of its truth. `change`: of the rows of each."""
-        paths = []
-        for side in ("left", "right", "truth"):
-            pixels = noise(width, height, {"left": 1, "right": 2, "truth": 3}[side])
+        words = []
+        for seed, side in enumerate(("left", "right", "truth")):
+            pixels = noise(width, height, seed)
             rows = change([pixels[y * width : (y + 1) * width] for y in range(height)], side)
-            paths += [f"--{side}", self.file(f"{name}_{side}.pgm", pgm(len(rows[0]), len(rows), b"".join(rows)))]
-        return paths
+            path = self.file(f"{name}_{side}.pgm", pgm(len(rows[0]), len(rows), b"".join(rows)))
+            words += [f"--{side}", path]
+        return words
 
     def equal(self, fit, width, height, change):
         """What a board makes of pictures that it fits, and of those that are fitted before."""
-        fitted = self.pair_of("fitted", width, height, change)
-        self.succeeds(self.run_with(*fitted, "--out", self.out))
+        self.succeeds(self.run_with(*self.pair_of("fitted", width, height, change), "--out", self.out))
         expected = [self.stats(), (self.out / "disparity.png").read_bytes()]
         raw = self.pair_of("raw", width, height, lambda rows, side: rows)
         self.refused(self.run_with(*raw), "raw_left.pgm'", f"add --fit {fit}, or --set")
@@ -209,10 +213,10 @@ class Fit(SourceTest):
     def test_crop_takes_the_middle(self):
         raw = self.equal("crop", 35, 26, lambda rows, side: [row[1:33] for row in rows[1:25]])
         small = self.pair_of("small", 34, 26, lambda rows, side: rows)
-        text = "pixels: must be as large as"
-        self.refused(self.run_with(*raw[:2], *small[2:4], "--fit", "crop"), f"34x26 {text} '{raw[1]}', 35x26")
-        self.refused(self.run_with(*raw[:4], *small[4:], "--fit", "crop"), f"{text} the left picture, 35x26")
-        self.refused(self.run_with(*raw[:4], "--fit", "pad"), "35x26 pixels: must be at most as large as")
+        crop = ["--fit", "crop"]
+        rule = "34x26 pixels: must be as large as"
+        self.refused(self.run_with(*raw[:2], *small[2:4], *crop), f"{rule} '{raw[1]}', 35x26")
+        self.refused(self.run_with(*raw[:4], *small[4:], *crop), f"{rule} the left picture, 35x26")
 
     def test_pad_repeats_the_last_column_and_row(self):
         def padded(rows, side):
@@ -225,8 +229,59 @@ class Fit(SourceTest):
 
     def test_fit_is_refused_where_it_means_nothing(self):
         rig, _ = program.made_rig()
-        self.refused(self.run_small("--fit", "pad", "--calibration", rig), "--fit: does not go with --calibration")
-        self.refused(self.run_with("--fit", "pad", "--synthetic", 1), "--fit: does not go with --synthetic")
+        rule = "--fit: does not go with"
+        self.refused(self.run_small("--fit", "pad", "--calibration", rig), f"{rule} --calibration")
+        self.refused(self.run_with("--fit", "pad", "--synthetic", 1), f"{rule} --synthetic")
+
+
+class Offset(SourceTest):
+    def test_is_that_of_a_calibration_with_identity_tables(self):
+        calib = self.file("calib.txt", f"""cam0=[9 0 5; 0 9 5; 0 0 1]\ncam1=[9 0 5; 0 9 5; 0 0 1]
+            baseline=50\nwidth={WIDTH}\nheight={HEIGHT}\n""")
+        truth = ["--truth", self.left, "--truth-scale", 16]
+        for offset in (-4, 3):
+            rig = self.folder / "rig.yaml"
+            self.succeeds(run("calibrate", "--import", calib, f"--disparity-offset={offset}", "--out", rig))
+            self.succeeds(self.run_small(*truth, "--calibration", rig, "--out", self.out))
+            expected = self.result()
+            self.succeeds(self.run_small(*truth, "--disparity-offset", offset, "--out", self.out))
+            self.succeeds(run("diff", self.out, self.out))  # repeats the run, with its truth
+            for name, found in self.result().items():
+                if name != "run.json":
+                    self.assertTrue(found == expected[name], name)
+            self.assertEqual(self.run_json()["disparity_offset"], offset)
+            self.assertFalse((self.out / "depth.png").exists())
+        joint = sets("fpga.tables=joint", "allocation.left_lut=bank6", "allocation.right_lut=bank6")
+        self.succeeds(self.run_small(*joint, "--disparity-offset", 3, "--out", self.out))
+        self.assertTrue(self.result()["disparity.png"] == expected["disparity.png"])
+        both = self.run_small("--disparity-offset", 3, "--calibration", rig)
+        self.refused(both, "--disparity-offset: does not go with --calibration")
+
+    def test_finds_the_disparities_from_the_offset_on(self):
+        found = []
+        for offset in (-9, 0, 9):
+            pixels = self.left.read_bytes()[-WIDTH * HEIGHT :]
+            rows = [pixels[y * WIDTH : (y + 1) * WIDTH] for y in range(HEIGHT)]
+            shifted = b"".join((4 * row)[WIDTH + offset + 1 :][:WIDTH] for row in rows)  # disparity offset + 1
+            right = self.file("shifted.pgm", pgm(WIDTH, HEIGHT, shifted))
+            head = f"Pf\n{WIDTH} {HEIGHT}\n-1\n".encode()
+            level = struct.pack("<f", max(offset, 0) + 1)
+            truth = ["--truth", self.file("truth.pfm", head + level * WIDTH * HEIGHT)]
+            words = ["--disparity-offset", offset, "--set", "matcher.disparities=4", "--out", self.out]
+            self.succeeds(self.run_small(*words, *truth, right=right))
+            found.append(self.stats()["accuracy"]["bad_1_percent"])
+            pixels = (self.out / "disparity.pfm").read_bytes()[-4 * WIDTH * HEIGHT :]
+            answers = [d for d in struct.unpack(f"<{WIDTH * HEIGHT}f", pixels) if d != math.inf]
+            self.assertGreater(len(answers), 100)
+            self.assertGreater(answers.count(1), 0.9 * len(answers))
+        self.assertEqual(found[0], 100, "a truth of 1 is 10 of the board")
+        self.assertLess(max(found[1:]), 10)
+
+    def test_needs_a_left_table_and_columns(self):
+        source = [*PRELOADED, *SMALL, *self.pair, "--disparity-offset"]
+        none = run("run", "fpl2003-no-calibration", *source, 5)
+        self.refused_in_one_line(none, "such as the preset fpl2003")
+        self.refused_in_one_line(run("run", "fpl2003", *source, -WIDTH), "must be less than the columns")
 
 
 class Truth(SourceTest):
