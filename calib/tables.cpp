@@ -83,6 +83,10 @@ std::size_t entries_without_source(const kernels::RectificationTable& table) {
                                                 [](std::uint32_t e) { return !kernels::entry_is_valid(e); }));
 }
 
+bool is_mostly_empty(const kernels::RectificationTable& table) {
+  return entries_without_source(table) * 2 > table.entries.size();
+}
+
 int source_lines(const kernels::RectificationTable& table, int lines) {
   if (const auto found = problems(table); !found.empty()) throw std::invalid_argument(found.front());
   if (lines < 1 || lines > table.height) {

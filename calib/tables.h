@@ -41,6 +41,9 @@ kernels::RectificationTable parse_lut(std::string_view bytes, int width, int hei
 // The number of entries that are not valid.
 std::size_t entries_without_source(const kernels::RectificationTable& table);
 
+// Whether more than half of the entries are not valid: no rig whose cameras see the same needs that.
+bool is_mostly_empty(const kernels::RectificationTable& table);
+
 // How many source lines a front end would have to buffer if it kept lines instead of reading single pixels.
 // For a window of `lines` rows of the rectified picture these are the lines from the first to the last one
 // that a valid entry of these rows names. Returns the largest number of all places of the window; 0 without

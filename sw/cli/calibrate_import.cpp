@@ -99,7 +99,7 @@ int import_calibration(const Import& import) {
     made.disparity_offset = offset_of(import, made);
     tables = calib::tables(made.rig, made.rectification, made.disparity_offset);
     for (const auto& [side, table] : {std::pair("left", &tables.left), std::pair("right", &tables.right)}) {
-      if (calib::entries_without_source(*table) * 2 > table->entries.size()) {
+      if (calib::is_mostly_empty(*table)) {
         throw std::runtime_error(fmt::format(
             "the {} table would be empty in {} of {} entries: this calibration cannot rectify pictures "
             "of {}x{} pixels with disparities from {} on",

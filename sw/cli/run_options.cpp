@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "calib/calibration.h"
+#include "calib/tables.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
@@ -20,9 +21,9 @@
 #include "sw/files/text_forms.h"
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
+#include "sw/runs/pair_check.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/run_results.h"
-#include "sw/runs/sources/calibration_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -127,32 +128,15 @@ void open_traces(const RunOptions& options, runs::RunInput& input) {
   input.trace = std::make_unique<trace::Trace>(files, input.board, options.trace.window());
 }
 
-// Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration
-// may be of another rig, which its file alone does not reveal.
-void say_how_rows_agree(const runs::RunInput& input, const host::StereoPair& pair) {
-  constexpr double kDoubtful = 1.5;  // pixels
-  constexpr std::size_t kFew = 10;
-  constexpr std::size_t kMany = 50;
-  const calib::MatchedRows rows = runs::calibration_functions().matched_rows(
-      kernels::rectify(pair.left, *input.tables.left), kernels::rectify(pair.right, *input.tables.right),
-      input.board.matcher.disparities);
-  std::string text = fmt::format(
-      "--calibration: of {} conspicuous points of the first left picture {} are found in the right one",
-      rows.points, rows.error.corners);
-  bool is_doubtful = false;
-  if (rows.error.corners < kFew) {
-    is_doubtful = rows.points >= kMany;
-    text += is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
-                        : ": too few to see whether it is of this rig";
-  } else {
-    is_doubtful = rows.error.mean_px > kDoubtful;
-    text += fmt::format("; their rows differ by {:.2f} pixels on average{}", rows.error.mean_px,
-                        is_doubtful ? ": is it of this rig?" : "");
-  }
-  process::say(is_doubtful ? "warning" : "note", text);
-}
-
 void say_what_is_not_seen(const runs::RunInput& input) {
+  for (const auto& [side, table] :
+       {std::pair("left", &input.tables.left), std::pair("right", &input.tables.right)}) {
+    if (calib::is_mostly_empty(**table))
+      process::say("warning",
+                   fmt::format("--calibration: {} of {} entries of the {} table are empty: hardly "
+                               "anything is seen: was its offset right, and its rig?",
+                               calib::entries_without_source(**table), (*table)->entries.size(), side));
+  }
   const int made_for = input.calibration->disparities;
   const int has = input.board.matcher.disparities;
   if (has < made_for)
@@ -426,7 +410,7 @@ runs::RunInput RunOptions::load() const {
   for (const std::string& note : opened.notes) process::say("note", note);
   if (input.calibration) say_what_is_not_seen(input);
   if (input.calibration && !input.timing_only)
-    process::attempt_or_refuse("", [&] { say_how_rows_agree(input, opened.pairs->pair(0)); });
+    process::attempt_or_refuse("", [&] { runs::say_how_rows_agree(input, opened.pairs->pair(0)); });
   input.pairs = input.timing_only ? runs::blank_pairs(input.board) : std::move(opened.pairs);
   return input;
 }

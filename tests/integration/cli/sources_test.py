@@ -234,6 +234,17 @@ class Fit(SourceTest):
         self.refused(self.run_with("--fit", "pad", "--synthetic", 1), f"{rule} --synthetic")
 
 
+class Exchanged(SourceTest):
+    def test_is_said_only_of_exchanged_pictures(self):
+        width, height, size = 160, 96, sets("image={width: 160, height: 96}", "matcher.disparities=24")
+        texture = noise(width + 8, height, 1)  # a disparity of 8
+        paths = [self.file(f"{first}.pgm", pgm(width, height, b"".join(
+            texture[y * (width + 8) + first :][:width] for y in range(height)))) for first in (0, 8)]
+        for left, right, is_said in ((*paths, False), (*reversed(paths), True)):
+            process = run("run", "fpl2003", *PRELOADED, *size, "--left", left, "--right", right)
+            self.assertEqual("are left and right exchanged?" in process.stderr, is_said, process.stderr)
+
+
 class Offset(SourceTest):
     def test_is_that_of_a_calibration_with_identity_tables(self):
         calib = self.file("calib.txt", f"""cam0=[9 0 5; 0 9 5; 0 0 1]\ncam1=[9 0 5; 0 9 5; 0 0 1]
@@ -262,7 +273,7 @@ class Offset(SourceTest):
         for offset in (-9, 0, 9):
             pixels = self.left.read_bytes()[-WIDTH * HEIGHT :]
             rows = [pixels[y * WIDTH : (y + 1) * WIDTH] for y in range(HEIGHT)]
-            shifted = b"".join((4 * row)[WIDTH + offset + 1 :][:WIDTH] for row in rows)  # disparity offset + 1
+            shifted = b"".join((4 * row)[WIDTH + offset + 1 :][:WIDTH] for row in rows)
             right = self.file("shifted.pgm", pgm(WIDTH, HEIGHT, shifted))
             head = f"Pf\n{WIDTH} {HEIGHT}\n-1\n".encode()
             level = struct.pack("<f", max(offset, 0) + 1)
