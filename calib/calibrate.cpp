@@ -153,6 +153,26 @@ double between(double before, double largest, double after) {
   return bend < 0 ? 0.5 * (before - after) / bend : 0;
 }
 
+// How much a pattern is like each place of a picture: its correlation.
+struct Likeness {
+  cv::Mat map;         // by the place of the pattern's top left pixel
+  double largest = 0;  // in the map
+  double second = 0;   // the largest that is not beside the largest
+  cv::Point at;        // of the largest
+};
+
+Likeness likeness_of(const cv::Mat& pattern, const cv::Mat& picture) {
+  constexpr int kBeside = 3;  // pixels
+  Likeness result;
+  cv::matchTemplate(picture, pattern, result.map, cv::TM_CCOEFF_NORMED);
+  cv::minMaxLoc(result.map, nullptr, &result.largest, nullptr, &result.at);
+  cv::Mat others = result.map.clone();
+  const cv::Rect beside(result.at.x - kBeside, result.at.y - kBeside, 2 * kBeside + 1, 2 * kBeside + 1);
+  others(beside & cv::Rect({0, 0}, others.size())) = -1;
+  cv::minMaxLoc(others, nullptr, &result.second);
+  return result;
+}
+
 }  // namespace
 
 CalibrationResult calibrate(const CalibrationRequest& request) {
@@ -209,7 +229,9 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
   constexpr int kMostPoints = 150;
   constexpr int kReach = 7;     // pixels of the window to each side of a point
   constexpr int kMostRows = 8;  // rows that are searched above and below
-  constexpr float kLeastCorrelation = 0.9F;
+  constexpr double kLeastCorrelation = 0.9;
+  constexpr double kMostAlike = 0.8;      // correlation with another place of the left picture
+  constexpr double kClearlyBetter = 0.6;  // what the best place lacks, as a part of what the second one lacks
   constexpr double kQuality = 0.02;
   constexpr double kDistance = 16;
   std::vector<cv::Point2f> points;
@@ -226,16 +248,18 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
     const cv::Rect inside = searched & picture;
     if ((window & picture) != window || inside.height != searched.height || inside.width < window.width)
       continue;
+    const cv::Mat pattern = view(left)(window);
+    const cv::Rect around(inside.x, inside.y, inside.width + disparities - 1, inside.height);
+    if (likeness_of(pattern, view(left)(around & picture)).second > kMostAlike) continue;
+    const Likeness found = likeness_of(pattern, view(right)(inside));
+    const bool is_found = found.largest >= kLeastCorrelation && found.at.y > 0 && found.at.y < 2 * kMostRows;
+    if (is_found && 1 - found.largest > kClearlyBetter * (1 - found.second)) continue;
     ++result.points;
-    cv::Mat likeness;
-    cv::matchTemplate(view(right)(inside), view(left)(window), likeness, cv::TM_CCOEFF_NORMED);
-    double largest = 0;
-    cv::Point at;
-    cv::minMaxLoc(likeness, nullptr, &largest, nullptr, &at);
-    if (!(largest >= kLeastCorrelation) || at.y == 0 || at.y == likeness.rows - 1) continue;
-    const double rest =
-        between(likeness.at<float>(at.y - 1, at.x), largest, likeness.at<float>(at.y + 1, at.x));
-    errors.push_back(window.y - (inside.y + at.y + rest));
+    if (!is_found) continue;
+    const auto at = [&found](int place) { return found.map.at<float>(place, found.at.x); };
+    const double rest = between(at(found.at.y - 1), found.largest, at(found.at.y + 1));
+    errors.push_back(window.y - (inside.y + found.at.y + rest));
+    result.in_row += std::abs(found.at.y - kMostRows) <= 1 ? 1U : 0U;
   }
   result.error = row_error(errors);
   return result;

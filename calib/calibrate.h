@@ -52,13 +52,15 @@ CalibrationResult calibrate(const CalibrationRequest& request);
 // The result of matched_rows().
 struct MatchedRows {
   std::size_t points = 0;  // distinctive points of the left picture that were searched for
+  std::size_t in_row = 0;  // of these, found in the same row, or the one above or below
   RowError error;          // of the points that were found
 };
 
 // Measures how well the rows of two rectified pictures agree. The most distinctive points of the left picture
 // are searched for in the right one, 0..disparities-1 columns to the left and up to 8 rows above or below.
-// Only reliable matches count. If the tables belong to the cameras, the mean error is below one pixel. The
-// function takes about 20 ms at 640x480. Throws std::invalid_argument if the pictures differ in size.
+// Only reliable matches count. A point of a pattern that repeats does not count: it looks like another place
+// of the left picture, or fits two places of the right one. If the tables belong to the cameras, the mean
+// error is below one pixel. The function takes about 50 ms at 640x480 with 320 disparities. Throws std::invalid_argument if the pictures differ in size.
 MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
 
 }  // namespace stereotlm::calib

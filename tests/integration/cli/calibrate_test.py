@@ -179,7 +179,7 @@ class Run(CalibrateTest):
         few = r"note: --calibration: of 0 conspicuous points .* too few to see whether it is of this rig"
         for left, right, text in (
             ("scene_left.png", lower, r"warning: .* differ by \d\.\d\d pixels on average: is it of this rig"),
-            ("scene_right.png", "scene_left.png", "warning: --calibration: .* is it of this rig"),
+            ("scene_right.png", "scene_left.png", r"warning: --cal.* are left and right exchanged\?"),
             (flat, flat, few),
         ):
             process = run(*self.scene(left=left, right=right))

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -96,6 +97,32 @@ TEST(OrderedLike, TurnsCornersByHalfAndThoseOfASquareBoardByQuarters) {
     EXPECT_EQ(ordered_like(corners, shape, quarter_turned), corners);
     EXPECT_EQ(ordered_like(corners, shape, half_turned(quarter_turned)), corners);
   }
+}
+
+// A picture whose column x is column x + shift of a texture that repeats after `period` columns and rows.
+kernels::GrayImage texture(int shift, int period) {
+  std::mt19937 random(1);
+  std::vector<std::uint8_t> tile(static_cast<std::size_t>(period * period));
+  for (std::uint8_t& each : tile) each = static_cast<std::uint8_t>(random() % 2 * 200);
+  kernels::GrayImage picture(200, 120);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const int place = (x + shift) / 4 % period + y / 4 % period * period;
+      picture.at(x, y) = tile[static_cast<std::size_t>(place)];
+    }
+  }
+  return picture;
+}
+
+TEST(MatchedRows, CountOnlyPointsThatAreAtOnePlace) {
+  const MatchedRows rows = matched_rows(texture(0, 97), texture(12, 97), 40);
+  EXPECT_GT(rows.in_row, 20U);
+  EXPECT_EQ(rows.in_row, rows.error.corners);
+  EXPECT_LT(rows.error.max_px, 0.3);
+  const MatchedRows exchanged = matched_rows(texture(12, 97), texture(0, 97), 40);
+  EXPECT_GT(exchanged.points, 20U);
+  EXPECT_EQ(exchanged.in_row, 0U);
+  for (const int shift : {0, 12}) EXPECT_EQ(matched_rows(texture(0, 5), texture(shift, 5), 40).points, 0U);
 }
 
 TEST(MatchedRows, RefusePicturesOfDifferentSizes) {
