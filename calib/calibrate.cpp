@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <utility>
@@ -16,28 +17,37 @@
 namespace stereotlm::calib {
 namespace {
 
-// Finds the grids. Skips a pair unless the grid is found in both of its pictures.
+// Finds the grids, in both pictures of a pair at a time. Skips a pair unless the grid is found in both.
 void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
-  const auto search = [&](const kernels::GrayImage& picture, const std::string& name) {
-    GridSearch found = find_grid(picture, request.grid);
-    if (!found.corners) result.skipped.push_back(fmt::format("'{}': {}", name, found.problem));
-    return std::move(found.corners);
+  std::size_t searched = 0;
+  const auto report = [&](const PicturePair& pair, bool is_left, const GridSearch& found) {
+    const char* half = pair.left_name != pair.right_name ? "" : is_left ? " (left half)" : " (right half)";
+    const std::string text = fmt::format("'{}'{}: {}", is_left ? pair.left_name : pair.right_name, half,
+                                         found.corners ? "found" : found.problem);
+    if (!found.corners) result.skipped.push_back(text);
+    ++searched;
+    if (request.progress) request.progress(searched, text);
   };
   for (std::size_t i = 0; i < request.pictures.size(); ++i) {
     const PicturePair& pair = request.pictures[i];
-    const auto left = search(pair.left, pair.left_name);
-    const auto right = search(pair.right, pair.right_name);
-    if (!left || !right) continue;
-    result.pairs.push_back({i, {*left, ordered_like(*left, request.grid, *right)}, {}});
+    auto search = std::async(std::launch::async, [&] { return find_grid(pair.left, request.grid); });
+    const GridSearch right = find_grid(pair.right, request.grid);
+    const GridSearch left = search.get();
+    report(pair, true, left);
+    report(pair, false, right);
+    if (!left.corners || !right.corners) continue;
+    result.pairs.push_back(
+        {i, {*left.corners, ordered_like(*left.corners, request.grid, *right.corners)}, {}});
   }
   if (result.pairs.size() >= kFewestPairs) return;
   std::string reasons;
   for (const std::string& reason : result.skipped) reasons += "\n  " + reason;
+  const char* hint = request.grid.pattern != Pattern::kChessboard
+                         ? ""
+                         : "; an inner corner is where four squares meet: a board of 10x7 squares has 9x6";
   throw std::invalid_argument(fmt::format(
-      "pairs with a grid of {}x{} inner corners in both pictures = {} of {}: must be {} or more; an inner "
-      "corner is where four squares meet: a board of 10x7 squares has 9x6{}",
-      request.grid.columns, request.grid.rows, result.pairs.size(), request.pictures.size(), kFewestPairs,
-      reasons));
+      "pairs with a grid of {} in both pictures = {} of {}: must be {} or more{}{}", request.grid.text(),
+      result.pairs.size(), request.pictures.size(), kFewestPairs, hint, reasons));
 }
 
 // What no offset can mend.
@@ -88,7 +98,7 @@ bool all_inside(const kernels::GrayImage& picture, const Corners& corners) {
 }
 
 // The row error of corners that are found in the rectified pictures. Only pairs whose corners all lie in both
-// rectified pictures count.
+// rectified pictures, and are found there, count.
 RowError found_again(const CalibrationRequest& request, const CalibrationResult& result) {
   const Calibration& made = result.calibration;
   std::vector<double> errors;
@@ -99,10 +109,11 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
     GridPair corners = rectified(made.rig, made.rectification, pair.corners);
     for (Eigen::Vector2d& corner : corners.left) corner.x() -= made.disparity_offset;
     if (!all_inside(left, corners.left) || !all_inside(right, corners.right)) continue;
-    corners.left = refined(left, request.grid, corners.left);
-    corners.right = refined(right, request.grid, corners.right);
+    const auto found_left = found_near(left, request.grid, corners.left);
+    const auto found_right = found_near(right, request.grid, corners.right);
+    if (!found_left || !found_right) continue;
     for (std::size_t i = 0; i < pair.used.size(); ++i) {
-      if (pair.used[i]) errors.push_back(corners.left[i].y() - corners.right[i].y());
+      if (pair.used[i]) errors.push_back((*found_left)[i].y() - (*found_right)[i].y());
     }
   }
   return row_error(errors);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@
 
 namespace stereotlm::calib {
 
-// A pair of pictures, and their names in messages.
+// A pair of pictures, and the names of their files. The names are equal if one file holds both pictures.
 struct PicturePair {
   std::string left_name;
   std::string right_name;
@@ -24,6 +25,8 @@ struct CalibrationRequest {
   std::vector<PicturePair> pictures;    // all of one size
   int disparities = 80;                 // number of candidates of the board
   std::optional<int> disparity_offset;  // nullopt: chosen by disparity_offset_for()
+  // Called after the search of each pair: how many pictures were searched, and "'right02.jpg': found".
+  std::function<void(std::size_t pictures, const std::string& last)> progress;
 };
 
 // A pair in which the grid was found.

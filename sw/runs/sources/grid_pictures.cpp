@@ -4,7 +4,6 @@
 
 #include <map>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "models/fpga/core_config.h"
@@ -15,51 +14,87 @@
 
 namespace stereotlm::runs {
 
+namespace {
+
+kernels::GrayImage half_of(const kernels::GrayImage& image, int first_column) {
+  kernels::GrayImage half(image.width / 2, image.height);
+  for (int row = 0; row < half.height; ++row) {
+    for (int column = 0; column < half.width; ++column)
+      half.at(column, row) = image.at(first_column + column, row);
+  }
+  return half;
+}
+
+}  // namespace
+
 std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string>& left,
                                                    const std::vector<std::string>& right,
+                                                   const std::vector<std::string>& side_by_side,
                                                    process::Problems& problems) {
-  const PairFiles files = find_pairs(left, right, problems);
-  std::map<std::string, std::string> paths;  // paths by SHA-256 of the pixels
-  std::string first;
-  int width = 0;  // of the first picture
-  int height = 0;
+  const bool is_split = !side_by_side.empty();
+  PairFiles files;
+  if (is_split)
+    files.left = files.right = files_of("--side-by-side", side_by_side, files.notes, problems);
+  else
+    files = find_pairs(left, right, problems);
+  int loaded_files = 0;
   int converted = 0;
   const auto load = [&](const std::string& option, const std::string& path) {
     kernels::GrayImage image;
     problems.attempt(option + ' ', [&] {
       media::LoadedGray loaded = media::load_gray(path);
+      ++loaded_files;
       converted += loaded.converted_from_colour ? 1 : 0;
       for (const std::string& note : loaded.notes) process::say("note", fmt::format("'{}': {}", path, note));
+      if (is_split && loaded.image.width % 2 != 0)
+        throw std::runtime_error(fmt::format("'{}': {} pixels wide: must be even", path, loaded.image.width));
       image = std::move(loaded.image);
-      const auto refuse = [&path](const std::string& rule) {
-        throw std::runtime_error(fmt::format("'{}': {}", path, rule));
-      };
-      const std::string size = fmt::format("{}x{} pixels: ", image.width, image.height);
-      const bool is_first = paths.empty();
-      // The same picture twice would count twice without new information.
-      const auto [known, is_new] =
-          paths.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), path);
-      if (!is_new) refuse(fmt::format("the same picture as '{}': must be another one", known->second));
-      if (is_first) std::tie(first, width, height) = std::tuple(path, image.width, image.height);
-      const kernels::IntegerRule& widths = fpga::kWidthWithTableRule;
-      const kernels::IntegerRule& heights = fpga::kHeightWithTableRule;
-      if (is_first && !(widths.allows(width) && heights.allows(height)))
-        refuse(size + fmt::format("a board's images with a look-up table are {} wide and {} high",
-                                  widths.text(), heights.text()));
-      if (image.width != width || image.height != height)
-        refuse(size + fmt::format("must be as large as '{}', {}x{}", first, width, height));
     });
     return image;
+  };
+  std::map<std::string, std::string> names;  // by SHA-256 of the pixels
+  std::map<std::pair<int, int>, std::vector<std::string>> names_of_size;
+  const auto check = [&](const std::string& name, const kernels::GrayImage& image) {
+    if (image.pixels.empty()) return;  // could not be loaded
+    // The same picture twice would count twice without new information.
+    const auto [known, is_new] =
+        names.emplace(files::sha256_hex(image.pixels.data(), image.pixels.size()), name);
+    if (!is_new)
+      problems.add(fmt::format("{}: the same picture as {}: must be another one", name, known->second));
+    std::vector<std::string>& of_size = names_of_size[{image.width, image.height}];
+    const kernels::IntegerRule& widths = fpga::kWidthWithTableRule;
+    const kernels::IntegerRule& heights = fpga::kHeightWithTableRule;
+    if (of_size.empty() && !(widths.allows(image.width) && heights.allows(image.height))) {
+      problems.add(
+          fmt::format("{}: {}x{} pixels: a board's images with a look-up table are {} wide and {} high", name,
+                      image.width, image.height, widths.text(), heights.text()));
+    }
+    of_size.push_back(name);
   };
   std::vector<calib::PicturePair> pairs;
   for (std::size_t i = 0; i < files.left.size(); ++i) {
     if (process::interrupted()) return {};
-    pairs.push_back(
-        {files.left[i], files.right[i], load("--left", files.left[i]), load("--right", files.right[i])});
+    kernels::GrayImage first = load(is_split ? "--side-by-side" : "--left", files.left[i]);
+    kernels::GrayImage second = is_split ? half_of(first, first.width / 2) : load("--right", files.right[i]);
+    if (is_split) first = half_of(first, 0);
+    check(fmt::format(is_split ? "--side-by-side '{}' (left half)" : "--left '{}'", files.left[i]), first);
+    check(fmt::format(is_split ? "--side-by-side '{}' (right half)" : "--right '{}'", files.right[i]),
+          second);
+    pairs.push_back({files.left[i], files.right[i], std::move(first), std::move(second)});
+  }
+  if (names_of_size.size() > 1) {
+    std::vector<std::string> sizes;
+    for (const auto& [size, of_size] : names_of_size)
+      sizes.push_back(
+          fmt::format("{} of {}x{}, such as {}", of_size.size(), size.first, size.second, of_size.front()));
+    problems.add(
+        fmt::format("pictures of several sizes: {}: must all have one size: take the others again with "
+                    "both cameras set to one size, or scale those that show the whole view of a camera",
+                    fmt::join(sizes, "; ")));
   }
   if (converted > 0)
     process::say("note",
-                 fmt::format("{} of {} pictures: colour, converted to grey", converted, 2 * pairs.size()));
+                 fmt::format("{} of {} pictures: colour, converted to grey", converted, loaded_files));
   for (const std::string& note : files.notes) process::say("note", note);
   return pairs;
 }

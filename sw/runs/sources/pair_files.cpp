@@ -119,6 +119,8 @@ Names matches_of(const std::string& pattern) {
   return files;
 }
 
+}  // namespace
+
 Names files_of(const std::string& option, const Names& patterns, Names& notes, process::Problems& problems) {
   Names files;
   for (const std::string& pattern : patterns) {
@@ -147,8 +149,6 @@ Names files_of(const std::string& option, const Names& patterns, Names& notes, p
   if (auto note = gap_note(option, files)) notes.push_back(*note);
   return files;
 }
-
-}  // namespace
 
 PairFiles find_pairs(const Names& left, const Names& right, process::Problems& problems) {
   PairFiles pairs;
