@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -36,9 +37,9 @@ RightOf mirrored(const GridShape& shape, int width) {
   };
 }
 
-// The evidence if the left picture i belongs to the right one partner(i), with these right corners. Nullopt if fewer than kFewestPairs are left, or no rig fits.
-std::optional<Evidence> evidence_with(const GridViews& views, const Rig& guess, const RightOf& right_of,
-                                      const std::function<std::size_t(std::size_t)>& partner) {
+// The rig if the left picture i belongs to the right one partner(i), with these right corners. Nullopt if fewer than kFewestPairs are left, or no rig fits.
+std::optional<RigFit> fit_with(const GridViews& views, const Rig& guess, const RightOf& right_of,
+                               const std::function<std::size_t(std::size_t)>& partner) {
   constexpr std::size_t kMostPairs = 16;
   std::vector<GridPair> trial;
   for (std::size_t i = 0; i < views.pairs.size() && trial.size() < kMostPairs; ++i) {
@@ -51,7 +52,7 @@ std::optional<Evidence> evidence_with(const GridViews& views, const Rig& guess, 
   }
   if (trial.size() < kFewestPairs) return std::nullopt;
   try {
-    return evidence_of(views.shape, trial, guess);
+    return fit_all(views.shape, trial, guess);
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }
@@ -67,19 +68,25 @@ std::optional<Misarrangement> find_misarrangement(const GridViews& views, const 
   std::optional<Misarrangement> best;
   double least = kFits;
   Rig guess = rig;
+  double roll = 0;  // of the best fit: by how much one camera is turned about its axis, degrees
   const auto attempt = [&](const RightOf& right_of, const auto& partner, const char* cause,
                            const std::string& cure) {
-    const auto evidence = evidence_with(views, guess, right_of, partner);
-    if (!evidence || !(evidence->ratio() < least)) return;
-    least = evidence->ratio();
-    best = Misarrangement{cause, cure, evidence->rig_rms_px};
+    const auto fit = fit_with(views, guess, right_of, partner);
+    if (!fit || !(fit->evidence.ratio() < least)) return;
+    least = fit->evidence.ratio();
+    best = Misarrangement{cause, cure, fit->evidence.rig_rms_px};
+    roll = kDegrees * std::abs(std::atan2(fit->rig.rotation(1, 0), fit->rig.rotation(0, 0)));
   };
-  attempt(turned(views.shape, quarter * quarter), same,
-          "the pictures of one camera are upside down against those of the other",
-          "turn them by 180 degrees; or each by 90, if the cameras are turned opposite ways");
-  for (const Eigen::Matrix2d& turn : {quarter, Eigen::Matrix2d(quarter.transpose())})
-    attempt(turned(views.shape, turn), same, "one camera is turned by 90 degrees against the other",
-            "turn the camera back, and take the pictures again");
+  for (const Eigen::Matrix2d& turn :
+       {Eigen::Matrix2d(quarter * quarter), quarter, Eigen::Matrix2d(quarter.transpose())})
+    attempt(turned(views.shape, turn), same, "", "");
+  if (best && roll > 135) {
+    best->cause = "the pictures of one camera are upside down against those of the other";
+    best->cure = "turn them by 180 degrees; or each by 90, if the cameras are turned opposite ways";
+  } else if (best) {
+    best->cause = "one camera is turned by 90 degrees against the other";
+    best->cure = "turn the camera back, and take the pictures again";
+  }
   for (const std::size_t shift : {1U, 2U, 3U}) {
     const char* const cause = "the pictures are paired wrongly";
     const char* const cure = "leave out the first {} of the {} pictures, and as many {} ones at the end";

@@ -47,43 +47,6 @@ std::string worst_pairs(const GridViews& views, const RigFit& fit) {
                   measured));
 }
 
-void check_places(const Rig& rig) {
-  const Eigen::Vector3d& t = rig.translation;
-  constexpr double kLeastBaseline = 1;  // mm
-  constexpr double kMostFactor = 1.5;   // of the focal lengths
-  if (t.norm() < kLeastBaseline) {
-    refuse(fmt::format(
-        "the cameras are {:.2f} mm apart: they must stand in two places: are the pictures of two cameras?",
-        t.norm()));
-  }
-  const double factor = rig.left.matrix(0, 0) / rig.right.matrix(0, 0);
-  if (std::max(factor, 1 / factor) > kMostFactor) {
-    refuse(
-        fmt::format("the focal lengths are {:.0f} and {:.0f} px: two cameras of one kind are needed, and "
-                    "grids that are tilted by 20 to 40 degrees, near and far",
-                    rig.left.matrix(0, 0), rig.right.matrix(0, 0)));
-  }
-  const double roll = kDegrees * std::atan2(rig.rotation(1, 0), rig.rotation(0, 0));
-  if (std::abs(roll) > 45) {
-    refuse(
-        fmt::format("one camera is turned by {:.0f} degrees about its axis against the other: both must be "
-                    "upright",
-                    std::abs(roll)));
-  }
-  if (std::abs(t.y()) > std::abs(t.x())) {
-    refuse(
-        fmt::format("the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
-                    "stand side by side; pictures that are turned by 90 degrees must be turned back",
-                    std::abs(t.y()), t.y() > 0 ? "above" : "below", std::abs(t.x())));
-  }
-  if (t.x() > 0) {
-    refuse(fmt::format(
-        "the cameras are swapped: what should be the left one stands {:.1f} mm to the right of the "
-        "other: exchange left and right pictures (if both cameras are upside down, turn them instead)",
-        t.x()));
-  }
-}
-
 // What pictures without tilt cannot tell: their sigmas are small, and wrong.
 void check_tilt(const Evidence& evidence) {
   constexpr double kLeast = 3;  // degrees
@@ -131,7 +94,7 @@ DeterminedRig determine_rig(const GridViews& views) {
   result.covariance = covariance(fit, views.shape, views.pairs);
   result.certainty = certainty_of(fit, result.covariance);
   check_focal_length(fit.rig, result.certainty);
-  check_places(fit.rig);
+  if (const auto problem = problem_of(fit.rig)) refuse(*problem);
   if (!lenses_are_determined(fit.rig))
     refuse(
         "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");

@@ -406,19 +406,16 @@ std::optional<Rectification> made_rectification(const Rig& rig) {
 void check(const Rig& rig, const ImportOptions& options, const Reader& reader) {
   constexpr double kLeastMm = 5;
   constexpr double kMostMm = 10'000;
-  const Vector3d& t = rig.translation;
-  const std::string place = fmt::format("T = {:.1f}, {:.1f}, {:.1f} mm: ", t.x(), t.y(), t.z());
-  if (std::abs(t.y()) > std::abs(t.x()))
-    reader.refuse(place + "one camera is above the other: they must be side by side");
-  if (t.x() > 0) reader.refuse(place + "the second camera is left of the first: exchange them");
+  const double distance = rig.translation.norm();
   if (rig.left.is_fisheye != rig.right.is_fisheye)
     reader.refuse("one lens is a fisheye, the other is none: both must have the same model");
-  if (!options.unit_mm && (t.norm() < kLeastMm || t.norm() > kMostMm)) {
+  if (!options.unit_mm && (distance < kLeastMm || distance > kMostMm)) {
     reader.refuse(
         fmt::format("the cameras are {:.2f} mm apart: must be {} to {} mm, or the unit of T must be "
                     "given by --unit mm, cm or m",
-                    t.norm(), kLeastMm, kMostMm));
+                    distance, kLeastMm, kMostMm));
   }
+  if (const auto problem = problem_of(rig)) reader.refuse(*problem);
 }
 
 struct Format {

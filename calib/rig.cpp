@@ -117,6 +117,42 @@ Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
                           "): must be seen by the lens: its distortion folds the picture over there");
 }
 
+std::optional<std::string> problem_of(const Rig& rig) {
+  constexpr double kLeastBaseline = 1;  // mm
+  constexpr double kMostFactor = 1.5;   // of the focal lengths
+  constexpr double kMostRoll = 45;      // degrees
+  const Eigen::Vector3d& t = rig.translation;
+  if (t.norm() < kLeastBaseline) {
+    return fmt::format(
+        "the cameras are {:.2f} mm apart: they must stand in two places: are the pictures of two cameras?",
+        t.norm());
+  }
+  const double factor = rig.left.matrix(0, 0) / rig.right.matrix(0, 0);
+  if (std::max(factor, 1 / factor) > kMostFactor) {
+    return fmt::format("the focal lengths are {:.0f} and {:.0f} px: two cameras of one kind are needed",
+                       rig.left.matrix(0, 0), rig.right.matrix(0, 0));
+  }
+  const double roll = kDegrees * std::abs(std::atan2(rig.rotation(1, 0), rig.rotation(0, 0)));
+  if (roll > kMostRoll) {
+    return fmt::format(
+        "one camera is turned by {:.0f} degrees about its axis against the other: both must be upright",
+        roll);
+  }
+  if (std::abs(t.y()) > std::abs(t.x())) {
+    return fmt::format(
+        "the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
+        "stand side by side; pictures that are turned by 90 degrees must be turned back",
+        std::abs(t.y()), t.y() > 0 ? "above" : "below", std::abs(t.x()));
+  }
+  if (t.x() > 0) {
+    return fmt::format(
+        "the cameras are swapped: what should be the left one stands {:.1f} mm to the right of the "
+        "other: exchange them (if both cameras are upside down, turn them instead)",
+        t.x());
+  }
+  return std::nullopt;
+}
+
 SeenPoint seen_by(const Rig& rig, const Eigen::Vector3d& point) {
   const Eigen::Vector3d to_right = rig.rotation * point + rig.translation;
   return {rig.left.pixel(point.hnormalized()), rig.right.pixel(to_right.hnormalized())};

@@ -450,12 +450,11 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   return fit;
 }
 
-std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
-                                    const Rig& guess) {
+std::optional<RigFit> fit_all(const GridShape& shape, const std::vector<GridPair>& pairs, const Rig& guess) {
   const Used all(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
   const SingleFits alone = fit_cameras(observations(shape, pairs, all), guess, Lens::kFull);
   if (!nearly_agree(places_of(alone.left, alone.right))) return std::nullopt;
-  return fit_kept(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull).evidence;
+  return fit_kept(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull);
 }
 
 Rectification rectify(const Rig& rig) {

@@ -78,11 +78,10 @@ inline constexpr std::size_t kFewestPairs = 3;
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
-// The evidence of all corners of all pairs, of which none is left out. The fits start at the cameras of
-// `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws std::runtime_error if
+// The rig with the lenses of single fits to all corners of all pairs, of which none is left out. The fits start
+// at the cameras of `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws std::runtime_error if
 // OpenCV finds no rig.
-std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
-                                    const Rig& guess);
+std::optional<RigFit> fit_all(const GridShape& shape, const std::vector<GridPair>& pairs, const Rig& guess);
 
 // One fit to the used corners, starting at the cameras of `guess`, whose lenses it may change unless they are
 // kept. Throws std::runtime_error if OpenCV finds no rig.

@@ -161,8 +161,8 @@ TEST(ImportRig, RefusesWhatIsNoRig) {
   };
   EXPECT_THAT(refused(kNamed, "[0, 1, 0], [0, 0, 1]], \"T\"", "[0, 1, 0.2], [0, 0, 1]], \"T\""),
               HasSubstr("'F': R = no rotation: must be a rotation matrix"));
-  EXPECT_THAT(refused(kNamed, "[-0.12, 0, 0]", "[120, 0, 0]"), HasSubstr("the second camera is left"));
-  EXPECT_THAT(refused(kNamed, "[-0.12, 0, 0]", "[0, -120, 0]"), HasSubstr("one camera is above the other"));
+  EXPECT_THAT(refused(kNamed, "[-0.12, 0, 0]", "[120, 0, 0]"), HasSubstr("the cameras are swapped"));
+  EXPECT_THAT(refused(kNamed, "[-0.12, 0, 0]", "[0, -120, 0]"), HasSubstr("120.0 mm below the left one"));
   EXPECT_THAT(refused(kNamed, "\"T\"", "\"X\""), HasSubstr("R and T, or R1, R2 and P2: missing"));
   EXPECT_THAT(refused(kNamed, "dist_left", "other"), HasSubstr("D1 or distCoeffs1: missing"));
   EXPECT_THAT(refused(kNamed, "[-0.1, 0, 0, 0]", "[-0.1, 0, 0]"), HasSubstr("must be 4, 5, 8 or 12"));
