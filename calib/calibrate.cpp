@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "calib/depth.h"
+#include "calib/determine_rig.h"
 #include "calib/grid.h"
 #include "calib/opencv_conversions.h"
 
@@ -38,39 +40,27 @@ void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
       reasons));
 }
 
-void check_places(const Rig& rig) {
-  const Eigen::Vector3d& t = rig.translation;
-  constexpr double kLeastBaseline = 1;  // mm
-  if (t.norm() < kLeastBaseline) {
-    throw std::invalid_argument(fmt::format(
-        "the cameras are {:.2f} mm apart: they must stand in two places: are the pictures of two cameras?",
-        t.norm()));
-  }
-  if (std::abs(t.y()) > std::abs(t.x())) {
-    throw std::invalid_argument(
-        fmt::format("the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
-                    "stand side by side",
-                    std::abs(t.y()), t.y() > 0 ? "above" : "below", std::abs(t.x())));
-  }
-  if (t.x() > 0) {
-    throw std::invalid_argument(fmt::format(
-        "the cameras are swapped: what should be the left one stands {:.1f} mm to the right of the "
-        "other: exchange left and right pictures",
-        t.x()));
-  }
+// What no offset can mend.
+void check_disparities(const Rig& rig, const DisparityRange& range) {
+  constexpr int kMost = 254;
+  if (range.needed() <= kMost) return;
+  const double turn = kDegrees * std::atan2(rig.rotation(0, 2), rig.rotation(2, 2));
+  throw std::invalid_argument(fmt::format(
+      "refused: the grid's disparities are {:.0f} .. {:.0f}, {} of them, and a board has {} at most: one "
+      "camera "
+      "is turned to the side by {:.0f} degrees against the other: turn them parallel, or photograph the grid "
+      "farther away",
+      range.min, range.max, range.needed(), kMost, std::abs(turn)));
 }
 
-// Whether the pictures determine the lens models. A model that does not map directions one to one in the
-// whole picture folds it over, which no lens does.
-bool lenses_are_determined(const Rig& rig) try {
-  for (const CameraModel& lens : {rig.left, rig.right}) {
-    for (const int row : {0, rig.height - 1}) {
-      for (const int column : {0, rig.width - 1}) lens.direction({column, row});
-    }
+// Adds the errors of depths at the nearest, the middle and the farthest disparity of the board.
+void add_depths(Calibration& made, const RigCovariance& covariance) {
+  for (const int disparity : {made.disparities - 1, made.disparities / 2, 1}) {
+    const auto depth = depth_in_the_middle(made, disparity);
+    if (depth && *depth > 0)
+      made.certainty->depths.push_back(
+          depth_error(made.rig, made.rectification, covariance, made.disparity_offset, *depth));
   }
-  return true;
-} catch (const std::domain_error&) {
-  return false;
 }
 
 // Measures the used corners in the rectified pictures.
@@ -168,20 +158,17 @@ double between(double before, double largest, double after) {
 CalibrationResult calibrate(const CalibrationRequest& request) {
   CalibrationResult result;
   find_grids(request, result);
-  std::vector<GridPair> corners;
-  for (const CalibratedPair& pair : result.pairs) corners.push_back(pair.corners);
-  RigFit fit;
-  for (const Lens lens : {Lens::kFull, Lens::kWithoutK3}) {
-    const kernels::GrayImage& first = request.pictures.front().left;
-    result.lens = lens;
-    fit = fit_rig(request.grid, first.width, first.height, corners, lens);
-    check_places(fit.rig);
-    if (lenses_are_determined(fit.rig)) break;
+  const kernels::GrayImage& first = request.pictures.front().left;
+  GridViews views{request.grid, first.width, first.height, request.pictures.size(), {}, {}, {}};
+  for (const CalibratedPair& pair : result.pairs) {
+    const PicturePair& pictures = request.pictures[pair.picture];
+    views.numbers.push_back(pair.picture);
+    views.names.push_back(fmt::format("'{}' and '{}'", pictures.left_name, pictures.right_name));
+    views.pairs.push_back(pair.corners);
   }
-  if (!lenses_are_determined(fit.rig)) {
-    throw std::invalid_argument(
-        "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");
-  }
+  const DeterminedRig determined = determine_rig(views);
+  const RigFit& fit = determined.fit;
+  result.lens = fit.lens;
   result.left_out = fit.left_out;
 
   Calibration& made = result.calibration;
@@ -201,12 +188,16 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
   quality.right_rms_px = fit.right_rms_px;
   quality.stereo_rms_px = fit.stereo_rms_px;
   measure(result.pairs, made);
+  if (!request.disparity_offset) check_disparities(made.rig, quality.disparities);
   made.disparity_offset = request.disparity_offset
                               ? *request.disparity_offset
                               : disparity_offset_for(quality.disparities, request.disparities);
   result.tables = tables(made.rig, made.rectification, made.disparity_offset);
+  check_sources(result.tables, made.disparity_offset);
+  made.certainty = determined.certainty;
+  add_depths(made, determined.covariance);
   quality.found_again = found_again(request, result);
-  quality.held_out = held_out(request, fit, corners, result.lens);
+  quality.held_out = held_out(request, fit, views.pairs, result.lens);
   return result;
 }
 

@@ -49,6 +49,14 @@ class Reader {
 
   Reader map(const std::string& key) const { return Reader(at(key), path_ + key + "."); }
 
+  std::vector<Reader> maps(const std::string& key) const {
+    const YAML::Node list = at(key);
+    if (!list.IsSequence()) refuse(key, "no list", "must be a list");
+    std::vector<Reader> result;
+    for (const YAML::Node& item : list) result.emplace_back(item, path_ + key + ".");
+    return result;
+  }
+
   static constexpr int kMost = std::numeric_limits<int>::max();
 
   int integer(const std::string& key, int least, int most) const {
@@ -178,14 +186,26 @@ Quality quality_of(const Reader& file) {
   return quality;
 }
 
+Certainty certainty_of(const Reader& file) {
+  Certainty its;
+  its.alone_rms_px = file.number("alone_rms_px");
+  its.rig_rms_px = file.number("rig_rms_px");
+  its.lenses_are_kept = file.integer("lenses_are_kept", 0, 1) == 1;
+  its.focal_sigma_px = file.number("focal_sigma_px");
+  its.centre_sigma_px = file.number("centre_sigma_px");
+  its.baseline_sigma_mm = file.number("baseline_sigma_mm");
+  its.turn_sigma_deg = file.number("turn_sigma_deg");
+  its.tilt_deg = file.number("tilt_deg");
+  for (const Reader& depth : file.maps("depth_errors"))
+    its.depths.push_back(
+        {depth.number("depth_mm"), depth.number("rounding_mm"), depth.number("calibration_mm")});
+  return its;
+}
+
 std::vector<Source> sources_of(const Reader& file) {
   std::vector<Source> sources;
-  const YAML::Node list = file.at("sources");
-  if (!list.IsSequence()) file.refuse("sources", "no list", "must be a list");
-  for (const YAML::Node& item : list) {
-    const Reader source(item, "sources.");
+  for (const Reader& source : file.maps("sources"))
     sources.push_back({source.text("left"), source.text("right"), source.count("corners_used")});
-  }
   return sources;
 }
 
@@ -212,6 +232,7 @@ Calibration calibration_of(const Reader& file) {
                  grid.number("square_mm")};
   result.sources = sources_of(file);
   result.quality = quality_of(file.map("quality"));
+  if (file.has("certainty")) result.certainty = certainty_of(file.map("certainty"));
   return result;
 }
 

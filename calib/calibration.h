@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/certainty.h"
 #include "calib/rig.h"
-#include "calib/rig_fit.h"
 
 namespace stereotlm::calib {
 
@@ -71,6 +71,7 @@ struct Calibration {
   int disparities = 0;  // number of candidates of the board for which it was made
   int disparity_offset = 0;
   Quality quality;
+  std::optional<Certainty> certainty;  // nullopt of an imported calibration
   std::vector<Source> sources;
   std::string left_lut_sha256;  // of the table files
   std::string right_lut_sha256;

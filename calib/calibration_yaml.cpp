@@ -32,6 +32,23 @@ void write(cv::FileStorage& file, const Quality& quality) {
   file << "}";
 }
 
+void write(cv::FileStorage& file, const Certainty& its) {
+  file << "certainty"
+       << "{"
+       << "alone_rms_px" << its.alone_rms_px << "rig_rms_px" << its.rig_rms_px << "lenses_are_kept"
+       << static_cast<int>(its.lenses_are_kept) << "focal_sigma_px" << its.focal_sigma_px << "centre_sigma_px"
+       << its.centre_sigma_px << "baseline_sigma_mm" << its.baseline_sigma_mm << "turn_sigma_deg"
+       << its.turn_sigma_deg << "tilt_deg" << its.tilt_deg << "depth_errors"
+       << "[";
+  for (const DepthError& each : its.depths) {
+    file << "{"
+         << "depth_mm" << each.depth_mm << "rounding_mm" << each.rounding_mm << "calibration_mm"
+         << each.calibration_mm << "}";
+  }
+  file << "]"
+       << "}";
+}
+
 void write(cv::FileStorage& file, const std::vector<Source>& sources) {
   file << "sources"
        << "[";
@@ -73,6 +90,7 @@ std::string calibration_yaml(const Calibration& calibration) {
        << calibration.grid.square_mm << "}";
   write(file, calibration.sources);
   write(file, calibration.quality);
+  if (calibration.certainty) write(file, *calibration.certainty);
   std::string text = file.releaseAndGetString();
   if (text.size() > kMostCalibrationBytes) {
     throw std::runtime_error(

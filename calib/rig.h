@@ -9,6 +9,8 @@
 
 namespace stereotlm::calib {
 
+inline constexpr double kDegrees = 57.29577951308232;  // of a radian
+
 // A pinhole camera behind a lens of one of OpenCV's models: polynomial (Brown, 1966), rational, with a thin
 // prism, or fisheye (Kannala and Brandt, 2006). Camera coordinates: x right, y down, z forward, in mm. A
 // direction is (x/z, y/z). Pixel coordinates: (0, 0) is the middle of the top left pixel.

@@ -64,6 +64,9 @@ struct SingleFit {
   cv::Mat distortion;
   std::vector<cv::Mat> rotations;
   std::vector<cv::Mat> translations;
+  cv::Mat sigmas;       // of fx, fy, cx, cy and the coefficients, one sigma
+  cv::Mat view_rms_px;  // [pair]
+  double rms_px = 0;
 };
 
 // Runs a step of the fit, and turns an exception of OpenCV into std::runtime_error.
@@ -78,13 +81,30 @@ auto with_refusal(const Fitted& fit) {
 
 int flags_of(Lens lens) { return lens == Lens::kWithoutK3 ? cv::CALIB_FIX_K3 : 0; }
 
+// Starts at `guess`. Without one, the result is the better of two fits: OpenCV's own, and one that starts at
+// the fit of a lens that has k1 alone. Each finds a wrong minimum now and then.
 SingleFit fit_camera(const Observations& seen, const std::vector<std::vector<cv::Point2f>>& corners,
-                     cv::Size size, Lens lens) {
-  return with_refusal([&] {
-    SingleFit fit;
-    cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
-                        fit.translations, flags_of(lens));
+                     cv::Size size, Lens lens, const CameraModel* guess = nullptr) {
+  constexpr double kMuchBetter = 0.99;
+  const auto fit_from = [&](SingleFit fit, int flags) {
+    cv::Mat none;
+    fit.rms_px = cv::calibrateCamera(seen.points, corners, size, fit.matrix, fit.distortion, fit.rotations,
+                                     fit.translations, fit.sigmas, none, fit.view_rms_px, flags);
     return fit;
+  };
+  constexpr int kSimple =
+      cv::CALIB_FIX_PRINCIPAL_POINT | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3;
+  const int guessed = cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens);
+  return with_refusal([&] {
+    if (guess != nullptr) {
+      SingleFit start;
+      start.matrix = to_mat(guess->matrix);
+      start.distortion = coefficients_of(*guess);
+      return fit_from(start, guessed);
+    }
+    SingleFit fit = fit_from({}, flags_of(lens));
+    SingleFit other = fit_from(fit_from({}, kSimple), guessed);
+    return other.rms_px < kMuchBetter * fit.rms_px ? other : fit;
   });
 }
 
@@ -103,18 +123,20 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Returns which corners to use: all corners of the pairs in which the right camera is near its median
-// position relative to the left one, and none of the other pairs. A pair whose grid moved between its two
-// pictures would spoil the fit to all pairs.
-Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t corners) {
-  constexpr double kMostShare = 0.02;  // of the distance of the grid
+// Where the right camera stands relative to the left one, by each pair alone.
+struct Places {
+  std::vector<double> errors;     // [pair]: distance from the median of all pairs, mm
+  std::vector<double> distances;  // [pair]: of the grid, mm
+};
+
+Places places_of(const SingleFit& left, const SingleFit& right) {
+  Places result;
   std::vector<Eigen::Vector3d> places;
-  std::vector<double> distances;
   for (std::size_t pair = 0; pair < left.rotations.size(); ++pair) {
     const Eigen::Isometry3d from_grid = to_pose(left.rotations[pair], left.translations[pair]);
     places.push_back(
         (to_pose(right.rotations[pair], right.translations[pair]) * from_grid.inverse()).translation());
-    distances.push_back(from_grid.translation().norm());
+    result.distances.push_back(from_grid.translation().norm());
   }
   Eigen::Vector3d middle;
   for (int axis = 0; axis < 3; ++axis) {
@@ -122,18 +144,43 @@ Used pairs_that_agree(const SingleFit& left, const SingleFit& right, std::size_t
     for (const Eigen::Vector3d& place : places) along.push_back(place[axis]);
     middle[axis] = median(along);
   }
-  std::vector<double> errors;
-  for (const Eigen::Vector3d& place : places) errors.push_back((place - middle).norm());
-  const double usual = kMostMedians * median(errors);
+  for (const Eigen::Vector3d& place : places) result.errors.push_back((place - middle).norm());
+  return result;
+}
+
+// Returns which corners to use: all corners of the pairs in which the right camera is near its median
+// position relative to the left one, and none of the other pairs. A pair whose grid moved between its two
+// pictures would spoil the fit to all pairs.
+Used pairs_that_agree(const Places& places, std::size_t corners) {
+  constexpr double kMostShare = 0.02;  // of the distance of the grid
+  const double usual = kMostMedians * median(places.errors);
   Used used;
-  for (std::size_t pair = 0; pair < distances.size(); ++pair) {
-    const bool agrees = errors[pair] <= std::max(usual, kMostShare * distances[pair]);
-    used.emplace_back(corners, agrees);
-  }
+  for (std::size_t pair = 0; pair < places.errors.size(); ++pair)
+    used.emplace_back(corners, places.errors[pair] <= std::max(usual, kMostShare * places.distances[pair]));
   return used;
 }
 
-Used corners_that_fit(const RigFit& fit) {
+double root_mean_square(const Misfit& misfit) {
+  double squares = 0;
+  for (const std::vector<double>* side : {&misfit.left, &misfit.right})
+    for (const double distance : *side) squares += distance * distance;
+  return std::sqrt(squares / (2.0 * static_cast<double>(misfit.left.size())));
+}
+
+// [pair]: how much worse the rig fits than the cameras alone do.
+std::vector<double> ratios_of_pairs(const RigFit& fit, const SingleFit& left, const SingleFit& right) {
+  std::vector<double> ratios;
+  for (std::size_t pair = 0; pair < fit.misfits.size(); ++pair) {
+    const auto view = static_cast<int>(pair);
+    ratios.push_back(root_mean_square(fit.misfits[pair]) * std::sqrt(2.0) /
+                     std::hypot(left.view_rms_px.at<double>(view), right.view_rms_px.at<double>(view)));
+  }
+  return ratios;
+}
+
+// `ratios` of the pairs: a pair is left out whose rig fits much worse than those of the others.
+Used corners_that_fit(const RigFit& fit, const std::vector<double>& ratios) {
+  constexpr double kMostRatio = 1.8;  // of the median
   std::vector<double> of_used;
   for (std::size_t pair = 0; pair < fit.used.size(); ++pair) {
     for (std::size_t corner = 0; corner < fit.used[pair].size(); ++corner) {
@@ -141,6 +188,7 @@ Used corners_that_fit(const RigFit& fit) {
     }
   }
   const double most = std::max(kAlwaysFits, kMostMedians * median(std::move(of_used)));
+  const double usual = median(ratios);
   Used result = fit.used;
   for (std::size_t pair = 0; pair < result.size(); ++pair) {
     std::size_t count = 0;
@@ -148,7 +196,8 @@ Used corners_that_fit(const RigFit& fit) {
       result[pair][corner] = fit.misfits[pair].of_corner(corner) <= most;
       if (result[pair][corner]) ++count;
     }
-    if (2 * count < result[pair].size()) result[pair].assign(result[pair].size(), false);
+    if (2 * count < result[pair].size() || ratios[pair] > kMostRatio * usual)
+      result[pair].assign(result[pair].size(), false);
   }
   return result;
 }
@@ -157,18 +206,16 @@ bool is_used(const std::vector<bool>& pair) {
   return std::find(pair.begin(), pair.end(), true) != pair.end();
 }
 
-void check_pairs(const Used& used) {
-  const auto count = static_cast<std::size_t>(std::count_if(used.begin(), used.end(), is_used));
-  if (count >= kFewestPairs) return;
-  throw std::invalid_argument("pairs of pictures whose grid fits = " + std::to_string(count) + ": must be " +
-                              std::to_string(kFewestPairs) + " or more");
+bool has_few_pairs(const Used& used) {
+  return static_cast<std::size_t>(std::count_if(used.begin(), used.end(), is_used)) < kFewestPairs;
 }
 
 RigFit fit_once(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
-                const Rig& guess, Lens lens) {
+                const Rig& guess, Lens lens, Lenses lenses = Lenses::kFitted) {
   RigFit fit;
   fit.used = used;
-  fit.rig = solve_rig(shape, pairs, used, guess, lens);
+  fit.lens = lens;
+  fit.rig = solve_rig(shape, pairs, used, guess, lens, lenses);
   const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
   for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
     fit.misfits.push_back(misfit(fit.rig, shape, pairs[pair], is_used(used[pair]) ? used[pair] : all));
@@ -196,6 +243,45 @@ void add_figures(RigFit& fit) {
   fit.left_rms_px = std::sqrt(left / corners);
   fit.right_rms_px = std::sqrt(right / corners);
   fit.stereo_rms_px = std::sqrt((left + right) / (2 * corners));
+}
+
+Rig guess_of(const SingleFit& left, const SingleFit& right, cv::Size size) {
+  return {size.width, size.height, to_camera(left.matrix, left.distortion),
+          to_camera(right.matrix, right.distortion)};
+}
+
+// Whether a camera has another focal length or centre than its single fit, by more than 3 sigma.
+bool is_bent(const CameraModel& camera, const SingleFit& alone) {
+  const Eigen::Matrix3d change = camera.matrix - to_eigen<Eigen::Matrix3d>(alone.matrix);
+  const double changes[] = {change(0, 0), change(1, 1), change(0, 2), change(1, 2)};
+  for (int i = 0; i < 4; ++i) {
+    if (std::abs(changes[i]) > 3 * alone.sigmas.at<double>(i)) return true;
+  }
+  return false;
+}
+
+// Each camera fitted by itself to the same corners.
+struct SingleFits {
+  SingleFit left;
+  SingleFit right;
+
+  bool are_bent_by(const Rig& rig) const { return is_bent(rig.left, left) || is_bent(rig.right, right); }
+};
+
+SingleFits fit_cameras(const Observations& seen, const Rig& guess, Lens lens) {
+  const cv::Size size(guess.width, guess.height);
+  return {fit_camera(seen, seen.left, size, lens, &guess.left),
+          fit_camera(seen, seen.right, size, lens, &guess.right)};
+}
+
+// The rig that has the lenses of the single fits.
+RigFit fit_kept(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
+                const SingleFits& alone, cv::Size size, Lens lens) {
+  RigFit fit = fit_once(shape, pairs, used, guess_of(alone.left, alone.right, size), lens, Lenses::kKept);
+  add_figures(fit);
+  fit.evidence.alone_rms_px = std::max(alone.left.rms_px, alone.right.rms_px);
+  fit.evidence.rig_rms_px = fit.stereo_rms_px;
+  return fit;
 }
 
 using Step = Eigen::Matrix<double, 6, 1>;  // rotation vector (rad), translation (mm)
@@ -270,7 +356,7 @@ Eigen::Isometry3d fitted_pose(const Rig& rig, const std::vector<Eigen::Vector3d>
 }  // namespace
 
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
-              Lens lens) {
+              Lens lens, Lenses lenses) {
   const Observations seen = observations(shape, pairs, used);
   return with_refusal([&] {
     cv::Mat m1 = to_mat(guess.left.matrix);
@@ -280,10 +366,11 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
     cv::Mat rotation, translation, essential, fundamental;
     constexpr int kMostSteps = 200;
     constexpr double kCloseEnough = 1e-9;
-    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height},
-                        rotation, translation, essential, fundamental,
-                        cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
-                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+    cv::stereoCalibrate(
+        seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height}, rotation,
+        translation, essential, fundamental,
+        lenses == Lenses::kKept ? cv::CALIB_FIX_INTRINSIC : cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
+        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
     return Rig{guess.width,
                guess.height,
                to_camera(m1, d1),
@@ -296,7 +383,7 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used) {
   const std::vector<Eigen::Vector3d> points = corner_points(shape);
   const Eigen::Isometry3d pose = fitted_pose(rig, points, pair, used);
-  Misfit result;
+  Misfit result{pose, {}, {}};
   for (std::size_t corner = 0; corner < points.size(); ++corner) {
     const SeenPoint seen = seen_by(rig, pose * points[corner]);
     result.left.push_back((seen.left - pair.left[corner]).norm());
@@ -306,25 +393,48 @@ Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, cons
 }
 
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs, Lens lens) {
+  constexpr double kSuspicious = 1.5;
+  const cv::Size size(width, height);
   const auto corners = static_cast<std::size_t>(shape.corners());
   Used used(pairs.size(), std::vector<bool>(corners, true));
-  check_pairs(used);
-  const Observations seen = observations(shape, pairs, used);
-  const SingleFit left = fit_camera(seen, seen.left, {width, height}, lens);
-  const SingleFit right = fit_camera(seen, seen.right, {width, height}, lens);
-  const Rig guess{width, height, to_camera(left.matrix, left.distortion),
-                  to_camera(right.matrix, right.distortion)};
-  used = pairs_that_agree(left, right, corners);
-  check_pairs(used);
+  if (has_few_pairs(used))
+    throw std::invalid_argument("pairs of pictures = " + std::to_string(pairs.size()) + ": must be " +
+                                std::to_string(kFewestPairs) + " or more");
+  const Observations all = observations(shape, pairs, used);
+  const SingleFit left = fit_camera(all, all.left, size, lens);
+  const SingleFit right = fit_camera(all, all.right, size, lens);
+  if (const Used agree = pairs_that_agree(places_of(left, right), corners); !has_few_pairs(agree))
+    used = agree;
+  const Rig guess = guess_of(left, right, size);
   RigFit fit = fit_once(shape, pairs, used, guess, lens);
+  bool has_few = false;
   for (int round = 1; round < kMostRounds; ++round) {
-    used = corners_that_fit(fit);
-    check_pairs(used);
-    if (used == fit.used) break;
+    used = corners_that_fit(fit, ratios_of_pairs(fit, left, right));
+    has_few = has_few_pairs(used);
+    if (has_few || used == fit.used) break;
     fit = fit_once(shape, pairs, used, fit.rig, lens);
   }
   add_figures(fit);
+  const SingleFits alone = fit_cameras(observations(shape, pairs, fit.used), guess, lens);
+  RigFit kept = fit_kept(shape, pairs, fit.used, alone, size, lens);
+  const bool is_bent = alone.are_bent_by(fit.rig);
+  Evidence evidence = kept.evidence;
+  evidence.has_few_pairs = has_few;
+  if (!is_bent) evidence.rig_rms_px = std::min(evidence.rig_rms_px, fit.stereo_rms_px);
+  evidence.lenses_are_kept = is_bent && evidence.ratio() >= kSuspicious;
+  if (evidence.lenses_are_kept) fit = std::move(kept);
+  fit.evidence = evidence;
   return fit;
+}
+
+std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
+                                    const Rig& guess) {
+  constexpr double kMostShare = 0.1;  // of the distance of the grid
+  const Used all(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
+  const SingleFits alone = fit_cameras(observations(shape, pairs, all), guess, Lens::kFull);
+  const Places places = places_of(alone.left, alone.right);
+  if (!(median(places.errors) < kMostShare * median(places.distances))) return std::nullopt;
+  return fit_kept(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull).evidence;
 }
 
 Rectification rectify(const Rig& rig) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/rig.h"
@@ -11,6 +13,7 @@ namespace stereotlm::calib {
 
 // [corner]: distance in pixels from a corner found in a pair to the position at which a rig would see it.
 struct Misfit {
+  Eigen::Isometry3d pose;  // from the grid to camera coordinates of the left camera, where it fits best
   std::vector<double> left;
   std::vector<double> right;
 
@@ -24,9 +27,27 @@ struct LeftOutCorner {
   double misfit_px = 0;
 };
 
+// Whether all five coefficients of the lens are fitted, or k3 stays 0.
+enum class Lens : std::uint8_t { kFull, kWithoutK3 };
+
+// How well each camera fits by itself, and both as a rig. A rig fits as well as its cameras, if the two
+// pictures of each pair show the grid at the same place.
+struct Evidence {
+  double alone_rms_px = 0;       // reprojection of the worse camera, which is fitted by itself
+  double rig_rms_px = 0;         // of both cameras with the lenses of these fits
+  bool lenses_are_kept = false;  // whether the rig has these lenses, because a joint fit would bend them
+  bool has_few_pairs = false;    // whether fewer than kFewestPairs fit, so that no corner was left out
+
+  double ratio() const { return rig_rms_px / alone_rms_px; }
+  // Whether the rig does not explain what its cameras see.
+  bool refutes() const { return has_few_pairs || (ratio() >= 3 && rig_rms_px >= 0.2); }
+};
+
 // The rig that explains the observed corners best (least squares).
 struct RigFit {
   Rig rig;
+  Lens lens = Lens::kFull;
+  Evidence evidence;
   std::vector<std::vector<bool>> used;  // [pair][corner]
   std::vector<LeftOutCorner> left_out;  // the unused corners
   std::vector<Misfit> misfits;          // of all corners
@@ -36,24 +57,31 @@ struct RigFit {
   double stereo_rms_px = 0;  // over the pictures of both cameras
 };
 
-// Whether all five coefficients of the lens are fitted, or k3 stays 0.
-enum class Lens : std::uint8_t { kFull, kWithoutK3 };
-
 inline constexpr std::size_t kFewestPairs = 3;
 
 // Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate). The first
 // fit uses the pairs that agree about the position of the right camera relative to the left. A corner is left
 // out on both sides if its misfit is above max(8 * median, 0.1 pixels). A pair that keeps less than half of
-// its corners is left out. The fit is repeated until it uses the same corners again. Throws
-// std::invalid_argument if fewer than kFewestPairs are given or left; std::runtime_error if OpenCV finds no
-// rig.
+// its corners is left out. The fit is repeated until it uses the same corners again. Then each camera is
+// fitted by itself to these corners. If the rig fits worse than its cameras (from 1.5 times on), and the
+// joint fit moved a focal length or a centre by more than 3 sigma, the result has the lenses of the single
+// fits. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if OpenCV finds
+// no rig. The caller looks at RigFit::evidence.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
-// One fit to the used corners, starting at the cameras of `guess`. Throws std::runtime_error if OpenCV finds
-// no rig.
+// The evidence of all corners of all pairs, of which none is left out. The fits start at the cameras of
+// `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws std::runtime_error if
+// OpenCV finds no rig.
+std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
+                                    const Rig& guess);
+
+// One fit to the used corners, starting at the cameras of `guess`, whose lenses it may change unless they are
+// kept. Throws std::runtime_error if OpenCV finds no rig.
+enum class Lenses : std::uint8_t { kFitted, kKept };
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs,
-              const std::vector<std::vector<bool>>& used, const Rig& guess, Lens lens);
+              const std::vector<std::vector<bool>>& used, const Rig& guess, Lens lens,
+              Lenses lenses = Lenses::kFitted);
 
 // The misfit of all corners of a pair. The grid is placed where the used corners fit best.
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used);

@@ -1,5 +1,7 @@
 #include "calib/tables.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace stereotlm::calib {
 namespace {
@@ -81,6 +84,16 @@ kernels::RectificationTable parse_lut(std::string_view bytes, int width, int hei
 std::size_t entries_without_source(const kernels::RectificationTable& table) {
   return static_cast<std::size_t>(std::count_if(table.entries.begin(), table.entries.end(),
                                                 [](std::uint32_t e) { return !kernels::entry_is_valid(e); }));
+}
+
+void check_sources(const TablePair& tables, int disparity_offset) {
+  for (const auto& [side, table] : {std::pair("left", &tables.left), std::pair("right", &tables.right)}) {
+    if (2 * entries_without_source(*table) <= table->entries.size()) continue;
+    throw std::invalid_argument(fmt::format(
+        "refused: the {} table would be empty in {} of {} entries: with disparities from {} on, the "
+        "cameras of this calibration see too little of the same",
+        side, entries_without_source(*table), table->entries.size(), disparity_offset));
+  }
 }
 
 int source_lines(const kernels::RectificationTable& table, int lines) {

@@ -41,6 +41,10 @@ kernels::RectificationTable parse_lut(std::string_view bytes, int width, int hei
 // The number of entries that are not valid.
 std::size_t entries_without_source(const kernels::RectificationTable& table);
 
+// Throws std::invalid_argument if more than half of the entries of a table are not valid: such a calibration
+// cannot rectify.
+void check_sources(const TablePair& tables, int disparity_offset);
+
 // How many source lines a front end would have to buffer if it kept lines instead of reading single pixels.
 // For a window of `lines` rows of the rectified picture these are the lines from the first to the last one
 // that a valid entry of these rows names. Returns the largest number of all places of the window; 0 without

@@ -20,6 +20,7 @@
 #include "calib/depth.h"
 #include "calib/grid_sheet.h"
 #include "calib/tables.h"
+#include "calib/verdict.h"
 #include "models/kernels/limits.h"
 #include "sw/cli/calibrate_import.h"
 #include "sw/cli/calibration_text.h"
@@ -40,14 +41,9 @@ namespace stereotlm::cli {
 namespace {
 
 using calib::Calibration;
-using calib::RowError;
 namespace fs = std::filesystem;
 
 constexpr int kWindow = 7;  // window of fpl2003, pixels
-
-std::string rows_text(const RowError& error) {
-  return fmt::format("mean {:.3f} px, max {:.3f}, {} corners", error.mean_px, error.max_px, error.corners);
-}
 
 std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictures) {
   const auto& sources = result.calibration.sources;
@@ -56,14 +52,6 @@ std::string pairs_text(const calib::CalibrationResult& result, std::size_t pictu
                       [](std::size_t sum, const calib::Source& source) { return sum + source.corners_used; });
   return fmt::format("{} of {} with the grid; of {} corners each, {} fit, {} do not", result.pairs.size(),
                      pictures, result.calibration.grid.corners(), corners, result.left_out.size());
-}
-
-std::string disparities_text(const Calibration& made) {
-  const calib::DisparityRange& grid = made.quality.disparities;
-  const int first = made.disparity_offset;
-  const int last = first + made.disparities - 1;
-  return fmt::format("{:.1f} .. {:.1f} of the grid; {}{}", grid.min, grid.max, offset_text(made),
-                     grid.min < first || grid.max > last ? " (the grid's do not fit)" : "");
 }
 
 std::string table_text(const kernels::RectificationTable& table) {
@@ -93,32 +81,14 @@ std::string left_out_text(const calib::CalibrationResult& result) {
 }
 
 std::string calibration_summary(const calib::CalibrationResult& result, std::size_t pictures) {
-  const Calibration& made = result.calibration;
-  const calib::Quality& quality = made.quality;
-  const Eigen::AngleAxisd turn(made.rig.rotation);
-  constexpr double kDegrees = 57.29577951308232;
-  std::string text = calibration_row("pairs", pairs_text(result, pictures));
+  std::string text = calib::verdict_of(result.calibration) + '\n';
+  text += calibration_row("pairs", pairs_text(result, pictures));
   text += left_out_text(result);
-  text += calibration_row("left camera", camera_text(made.rig.left));
-  text += calibration_row("right camera", camera_text(made.rig.right));
   if (result.lens == calib::Lens::kWithoutK3) {
     text +=
         calibration_row("lenses", "k3 is taken as 0: the grid was not seen far enough out to determine it");
   }
-  text += calibration_row("baseline", fmt::format("{:.2f} mm; turned by {:.2f} degrees against each other",
-                                                  made.rig.translation.norm(), kDegrees * turn.angle()));
-  text += calibration_row("reprojection",
-                          fmt::format("RMS {:.3f} px (left {:.3f}, right {:.3f})", quality.stereo_rms_px,
-                                      quality.left_rms_px, quality.right_rms_px));
-  text += calibration_row("row error", rows_text(quality.row_error));
-  text += calibration_row("found again", rows_text(quality.found_again) + ", in the rectified pictures");
-  if (quality.held_out) {
-    text += calibration_row("held out",
-                            fmt::format("reprojection RMS {:.3f} px; row error {}; each pair by the others",
-                                        quality.held_out->rms_px, rows_text(quality.held_out->row_error)));
-  }
-  text += calibration_row("rectified", fmt::format("focal length {:.1f} px", made.rectification.p1(0, 0)));
-  text += calibration_row("disparities", disparities_text(made));
+  text += calibration_text(result.calibration);
   text += calibration_row("left table", table_text(result.tables.left));
   text += calibration_row("right table", table_text(result.tables.right));
   return text;
@@ -170,6 +140,9 @@ struct CalibrateOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
+    if (checked.is_given()) return check_alone(problems);
+    if (!out.is_given())
+      problems.add("--out: missing: the calibration, F.yaml, or the sheet of --print-grid, F.svg");
     if (import.is_given()) return check_import(problems);
     for (const Option* option : {&size, &unit, &lens, &cameras, &near, &far, &exported}) {
       if (option->is_given()) problems.add(fmt::format("{}: goes with --import", option->name()));
@@ -197,6 +170,15 @@ struct CalibrateOptions : Options {
     } else {
       for (const std::string& problem : calib::problems(grid_shape()))
         problems.add(fmt::format("grid: {}", problem));
+    }
+  }
+
+  // With --check, which goes with no other option.
+  void check_alone(process::Problems& problems) {
+    for (const Option* option :
+         {&grid, &square, &left, &right, &synthetic, &print_grid, &disparities, &offset, &import, &size,
+          &unit, &lens, &cameras, &near, &far, &exported, &out}) {
+      if (option->is_given()) problems.add(fmt::format("{}: does not go with --check", option->name()));
     }
   }
 
@@ -315,8 +297,11 @@ struct CalibrateOptions : Options {
       Option(this, "--out", "F.yaml",
              "The calibration; the tables F_left.lut and F_right.lut and the drawings F_drawings/ go beside "
              "it. With "
-             "--print-grid the sheet, F.svg",
-             {required("the calibration, F.yaml, or the sheet of --print-grid, F.svg")});
+             "--print-grid the sheet, F.svg");
+  Option checked =
+      Option(this, "--check", "F.yaml",
+             "Print the verdict on a calibration of this program again, from F.yaml and its tables "
+             "alone");
 };
 
 int leave_unwritten() { return interrupted("nothing was written"); }
@@ -485,7 +470,16 @@ class Calibrator {
   int truth_scale_ = 1;  // grey levels per disparity, of a synthetic rig
 };
 
+int check_calibration(const CalibrateOptions& options) {
+  process::Problems problems;
+  const auto input = runs::load_calibration(options.checked.text(), nullptr, problems, "--check");
+  problems.check();
+  process::print(calib::verdict_of(*input->calibration) + '\n' + calibration_text(*input->calibration));
+  return kDone;
+}
+
 int calibrate(const CalibrateOptions& options) {
+  if (options.checked.is_given()) return check_calibration(options);
   if (options.import.is_given()) return import_calibration(options.import_request());
   return options.print_grid.is_given() ? print_grid(options) : Calibrator(options).run();
 }

@@ -28,12 +28,7 @@ std::string summary(const calib::ImportedRig& imported, const calib::Calibration
   return calibration_row(
              "imported",
              imported.format + (imported.rectification ? ", pictures that are rectified already" : "")) +
-         calibration_row("left camera", camera_text(made.rig.left)) +
-         calibration_row("right camera", camera_text(made.rig.right)) +
-         calibration_row("baseline", fmt::format("{:.2f} mm", made.rig.translation.norm())) +
-         calibration_row("rectified", fmt::format("focal length {:.1f} px", made.rectification.p1(0, 0))) +
-         calibration_row("disparities", offset_text(made)) +
-         calibration_row("left table", entries_text(tables.left)) +
+         calibration_text(made) + calibration_row("left table", entries_text(tables.left)) +
          calibration_row("right table", entries_text(tables.right));
 }
 
@@ -98,15 +93,7 @@ int import_calibration(const Import& import) {
   process::attempt_or_refuse("", [&] {
     made.disparity_offset = offset_of(import, made);
     tables = calib::tables(made.rig, made.rectification, made.disparity_offset);
-    for (const auto& [side, table] : {std::pair("left", &tables.left), std::pair("right", &tables.right)}) {
-      if (calib::entries_without_source(*table) * 2 > table->entries.size()) {
-        throw std::runtime_error(fmt::format(
-            "the {} table would be empty in {} of {} entries: this calibration cannot rectify pictures "
-            "of {}x{} pixels with disparities from {} on",
-            side, calib::entries_without_source(*table), table->entries.size(), made.rig.width,
-            made.rig.height, made.disparity_offset));
-      }
-    }
+    calib::check_sources(tables, made.disparity_offset);
   });
   const std::string left = calib::lut_bytes(tables.left);
   const std::string right = calib::lut_bytes(tables.right);

@@ -11,11 +11,10 @@ namespace stereotlm::cli {
 // A line with its name.
 std::string calibration_row(const std::string& name, const std::string& text);
 
-std::string camera_text(const calib::CameraModel& camera);
-// The nearest and the farthest depth that the disparities cover.
-std::string depths_text(const calib::Calibration& made);
-// The disparities of the rectified pictures that those of the board are.
-std::string offset_text(const calib::Calibration& made);
+// The rows of cameras, certainty, quality and disparities.
+std::string calibration_text(const calib::Calibration& made);
+
+// How many entries of a table are empty.
 std::string entries_text(const kernels::RectificationTable& table);
 
 }  // namespace stereotlm::cli

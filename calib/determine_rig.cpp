@@ -1,0 +1,141 @@
+#include "calib/determine_rig.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace stereotlm::calib {
+namespace {
+
+[[noreturn]] void refuse(const std::string& cause) { throw std::invalid_argument("refused: " + cause); }
+
+// Names the pairs that fit worst.
+std::string worst_pairs(const GridViews& views, const RigFit& fit) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::pair<double, std::size_t>> misfits;
+  for (std::size_t i = 0; i < fit.misfits.size(); ++i) {
+    double squares = 0;
+    for (const std::vector<double>* side : {&fit.misfits[i].left, &fit.misfits[i].right})
+      for (const double distance : *side) squares += distance * distance;
+    misfits.emplace_back(std::sqrt(squares / (2.0 * views.shape.corners())), i);
+  }
+  std::sort(misfits.rbegin(), misfits.rend());
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, misfits.size()); ++i) {
+    text +=
+        fmt::format("{}{} {:.2g} px", i == 0 ? "" : ", ", views.names[misfits[i].second], misfits[i].first);
+  }
+  return text;
+}
+
+// The rig does not explain what its cameras see: says what was measured, and why if that is found.
+[[noreturn]] void refuse_misfit(const GridViews& views, const RigFit& fit) {
+  const std::string measured = fmt::format("each camera alone fits to {:.2f} px, the rig to {:.2g} px",
+                                           fit.evidence.alone_rms_px, fit.evidence.rig_rms_px);
+  if (const auto mistake = find_misarrangement(views, fit.rig)) {
+    refuse(fmt::format("{}: {}, and to {:.2f} px if that is undone: {}", mistake->cause, measured,
+                       mistake->rig_rms_px, mistake->cure));
+  }
+  refuse(
+      fmt::format("the two pictures of a pair do not show the grid at the same place: {}; worst {}: take "
+                  "both pictures of a "
+                  "pair at the same time, of a grid that stands still, with two cameras on one bar",
+                  measured, worst_pairs(views, fit)));
+}
+
+void check_places(const Rig& rig) {
+  const Eigen::Vector3d& t = rig.translation;
+  constexpr double kLeastBaseline = 1;  // mm
+  constexpr double kMostFactor = 1.5;   // of the focal lengths
+  if (t.norm() < kLeastBaseline) {
+    refuse(fmt::format(
+        "the cameras are {:.2f} mm apart: they must stand in two places: are the pictures of two cameras?",
+        t.norm()));
+  }
+  const double factor = rig.left.matrix(0, 0) / rig.right.matrix(0, 0);
+  if (std::max(factor, 1 / factor) > kMostFactor) {
+    refuse(
+        fmt::format("the focal lengths are {:.0f} and {:.0f} px: two cameras of one kind are needed, and "
+                    "grids that are tilted by 20 to 40 degrees, near and far",
+                    rig.left.matrix(0, 0), rig.right.matrix(0, 0)));
+  }
+  const double roll = kDegrees * std::atan2(rig.rotation(1, 0), rig.rotation(0, 0));
+  if (std::abs(roll) > 45) {
+    refuse(
+        fmt::format("one camera is turned by {:.0f} degrees about its axis against the other: both must be "
+                    "upright",
+                    std::abs(roll)));
+  }
+  if (std::abs(t.y()) > std::abs(t.x())) {
+    refuse(
+        fmt::format("the right camera is {:.1f} mm {} the left one and {:.1f} mm beside it: the cameras must "
+                    "stand side by side; pictures that are turned by 90 degrees must be turned back",
+                    std::abs(t.y()), t.y() > 0 ? "above" : "below", std::abs(t.x())));
+  }
+  if (t.x() > 0) {
+    refuse(fmt::format(
+        "the cameras are swapped: what should be the left one stands {:.1f} mm to the right of the "
+        "other: exchange left and right pictures (if both cameras are upside down, turn them instead)",
+        t.x()));
+  }
+}
+
+// What pictures without tilt cannot tell: their sigmas are small, and wrong.
+void check_tilt(const Certainty& certainty) {
+  constexpr double kLeast = 3;  // degrees
+  if (certainty.tilt_deg >= kLeast) return;
+  refuse(
+      fmt::format("the grid is tilted by {:.1f} degrees at most, so that the focal lengths are not "
+                  "determined: take pairs with the grid tilted by 20 to 40 degrees, near and far",
+                  certainty.tilt_deg));
+}
+
+void check_focal_length(const Rig& rig, const Certainty& certainty) {
+  constexpr double kMost = 0.1;
+  const double focal = rig.left.matrix(0, 0);
+  if (certainty.focal_sigma_px <= kMost * focal) return;
+  refuse(
+      fmt::format("the focal length is {:.0f} +- {:.0f} px: take more pairs, with the grid tilted by 20 to "
+                  "40 degrees, near and far",
+                  focal, certainty.focal_sigma_px));
+}
+
+// Whether the pictures determine the lens models. A model that does not map directions one to one in the
+// whole picture folds it over, which no lens does.
+bool lenses_are_determined(const Rig& rig) try {
+  for (const CameraModel& lens : {rig.left, rig.right}) {
+    for (const int row : {0, rig.height - 1}) {
+      for (const int column : {0, rig.width - 1}) lens.direction({column, row});
+    }
+  }
+  return true;
+} catch (const std::domain_error&) {
+  return false;
+}
+
+}  // namespace
+
+DeterminedRig determine_rig(const GridViews& views) {
+  DeterminedRig result;
+  RigFit& fit = result.fit;
+  for (const Lens lens : {Lens::kFull, Lens::kWithoutK3}) {
+    fit = fit_rig(views.shape, views.width, views.height, views.pairs, lens);
+    if (lenses_are_determined(fit.rig)) break;
+  }
+  result.covariance = covariance(fit, views.shape, views.pairs);
+  result.certainty = certainty_of(fit, result.covariance);
+  check_tilt(result.certainty);
+  if (fit.evidence.refutes()) refuse_misfit(views, fit);
+  check_focal_length(fit.rig, result.certainty);
+  check_places(fit.rig);
+  if (!lenses_are_determined(fit.rig))
+    refuse(
+        "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");
+  return result;
+}
+
+}  // namespace stereotlm::calib
