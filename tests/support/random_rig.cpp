@@ -35,11 +35,11 @@ Vector3d uniform(SplitMix& random, const Vector3d& most) {
   return most.unaryExpr([&random](double each) { return random.between(-each, each); });
 }
 
-std::size_t any(SplitMix& random, std::size_t count) { return random.next() % count; }
-
 int whole(SplitMix& random, int low, int high) {  // low..high, both included
   return low + static_cast<int>(random.next() % static_cast<std::uint64_t>(high - low + 1));
 }
+
+std::size_t any(SplitMix& random, std::size_t count) { return random.next() % count; }
 
 int sign(SplitMix& random) { return whole(random, 0, 1) == 0 ? 1 : -1; }
 
@@ -57,7 +57,7 @@ auto first_of(int tries, const Draw& draw) {
   for (int attempt = 0; attempt < tries; ++attempt) {
     if (const auto drawn = draw()) return *drawn;
   }
-  throw std::runtime_error("random rig: none in " + std::to_string(tries) + " draws");
+  throw std::domain_error("random rig: none in " + std::to_string(tries) + " draws");
 }
 
 Isometry3d pose_of(const GridShape& grid, const Matrix3d& rotation, const Vector3d& middle) {
@@ -65,90 +65,83 @@ Isometry3d pose_of(const GridShape& grid, const Matrix3d& rotation, const Vector
   return Eigen::Translation3d(middle - rotation * half) * Isometry3d(rotation);
 }
 
-struct Eye {
-  Eye(const CameraModel& of, const Rig& rig) : camera(of), widest(of.widest()) {
+// What a camera of a rig sees. Throws std::domain_error unless the lens maps directions one to one over the
+// picture, and a tenth beyond.
+class Eye {
+ public:
+  Eye(const Rig& rig, const CameraModel& camera)
+      : camera_(camera), widest_(camera.widest()), last_(rig.width - 1, rig.height - 1) {
     constexpr int kSteps = 20;
     for (int i = 0; i < (kSteps + 1) * (kSteps + 1); ++i) {
       const Vector2d share = Vector2d(i % (kSteps + 1), i / (kSteps + 1)) / kSteps;
-      directions.push_back(of.direction(share.cwiseProduct(Vector2d(rig.width - 1, rig.height - 1))));
-      farthest = std::max(farthest, directions.back().norm());
+      directions_.push_back(camera.direction(share.cwiseProduct(last_)));
+      if (widest_ < 1.1 * directions_.back().norm()) throw std::domain_error("random rig: the lens folds");
     }
   }
 
-  CameraModel camera;
-  double widest;
-  double farthest = 0;               // in the picture
-  std::vector<Vector2d> directions;  // all over the picture, with its corners
+  const std::vector<Vector2d>& directions() const { return directions_; }  // all over the picture
+
+  // Where it sees a point of its camera coordinates.
+  std::optional<Vector2d> pixel(const Vector3d& point, double border = 0) const {
+    if (!(point.z() > 0) || point.hnormalized().norm() > widest_) return std::nullopt;
+    const Vector2d pixel = camera_.pixel(point.hnormalized());
+    if (std::min(pixel.minCoeff(), (last_ - pixel).minCoeff()) < border) return std::nullopt;
+    return pixel;
+  }
+
+  // Nullopt unless a detector would find all corners of the grid.
+  std::optional<Corners> corners(const GridShape& shape, const Isometry3d& pose) const {
+    constexpr double kBorder = 4;        // pixels
+    constexpr double kNearest = 5;       // pixels between neighbours
+    constexpr double kObliquest = 0.34;  // cosine of 70 degrees between line of sight and normal
+    const auto columns = static_cast<std::size_t>(shape.columns);
+    Corners result;
+    for (const Vector3d& corner : corner_points(shape)) {
+      const Vector3d point = pose * corner;
+      const auto found = pixel(point, kBorder);
+      if (!found || point.normalized().dot(pose.linear().col(2)) < kObliquest) return std::nullopt;
+      const std::size_t number = result.size();
+      if (number % columns != 0 && (*found - result.back()).norm() < kNearest) return std::nullopt;
+      if (number >= columns && (*found - result[number - columns]).norm() < kNearest) return std::nullopt;
+      result.push_back(*found);
+    }
+    return result;
+  }
+
+ private:
+  CameraModel camera_;
+  double widest_;
+  Vector2d last_;  // pixel
+  std::vector<Vector2d> directions_;
 };
 
-// What the two cameras of a rig see. The constructor throws std::domain_error if a lens folds a picture over.
-class Views {
- public:
-  explicit Views(const Rig& rig) : rig_(rig), left_(rig.left, rig), right_(rig.right, rig) {}
+struct Views {
+  explicit Views(const Rig& rig)
+      : left(rig, rig.left),
+        right(rig, rig.right),
+        from_left(Eigen::Translation3d(rig.translation) * Isometry3d(rig.rotation)) {}
 
-  // Whether the lenses map directions one to one over the pictures, and a tenth beyond.
-  bool are_one_to_one() const {
-    return left_.widest >= 1.1 * left_.farthest && right_.widest >= 1.1 * right_.farthest;
-  }
-
-  // The part of the left picture that the right camera sees too, if all is at this depth.
-  struct Overlap {
-    double share = 0;
-    Vector2d middle = Vector2d::Zero();  // direction from the left camera
-  };
-  Overlap overlap(double depth) const {
-    Overlap result;
-    for (const Vector2d& direction : left_.directions) {
-      if (!seen(right_, rig_.rotation * (depth * direction.homogeneous()) + rig_.translation, 0)) continue;
-      result.middle += direction;
-      ++result.share;
+  // The directions from the left camera that the right one sees too, if all is at this depth.
+  std::vector<Vector2d> shared(double depth) const {
+    std::vector<Vector2d> result;
+    for (const Vector2d& direction : left.directions()) {
+      if (right.pixel(from_left * (depth * direction.homogeneous()))) result.push_back(direction);
     }
-    if (result.share > 0) result.middle /= result.share;
-    result.share /= static_cast<double>(left_.directions.size());
     return result;
   }
 
   // The corners of a grid that stands at one pose in the left exposure and at another in the right one.
-  // Nullopt unless a detector would find all of them in both pictures.
   std::optional<GridPair> grid(const GridShape& shape, const Isometry3d& in_left,
                                const Isometry3d& in_right) const {
-    const Isometry3d from_left = Eigen::Translation3d(rig_.translation) * Isometry3d(rig_.rotation);
-    const auto left = corners(left_, shape, in_left);
-    const auto right = corners(right_, shape, from_left * in_right);
-    if (!left || !right) return std::nullopt;
-    return GridPair{*left, *right};
+    const auto left_corners = left.corners(shape, in_left);
+    const auto right_corners = right.corners(shape, from_left * in_right);
+    if (!left_corners || !right_corners) return std::nullopt;
+    return GridPair{*left_corners, *right_corners};
   }
 
- private:
-  std::optional<Vector2d> seen(const Eye& eye, const Vector3d& point, double border) const {
-    if (!(point.z() > 0) || point.hnormalized().norm() > eye.widest) return std::nullopt;
-    const Vector2d pixel = eye.camera.pixel(point.hnormalized());
-    const Vector2d opposite = Vector2d(rig_.width - 1, rig_.height - 1) - pixel;
-    if (std::min(pixel.minCoeff(), opposite.minCoeff()) < border) return std::nullopt;
-    return pixel;
-  }
-
-  std::optional<Corners> corners(const Eye& eye, const GridShape& shape, const Isometry3d& pose) const {
-    constexpr double kBorder = 4;        // pixels
-    constexpr double kNearest = 5;       // pixels between neighbours
-    constexpr double kObliquest = 0.34;  // cosine of 70 degrees between line of sight and normal
-    Corners result;
-    for (const Vector3d& corner : corner_points(shape)) {
-      const Vector3d point = pose * corner;
-      const auto pixel = seen(eye, point, kBorder);
-      if (!pixel || point.normalized().dot(pose.linear().col(2)) < kObliquest) return std::nullopt;
-      const auto columns = static_cast<std::size_t>(shape.columns);
-      const std::size_t number = result.size();
-      if (number % columns != 0 && (*pixel - result.back()).norm() < kNearest) return std::nullopt;
-      if (number >= columns && (*pixel - result[number - columns]).norm() < kNearest) return std::nullopt;
-      result.push_back(*pixel);
-    }
-    return result;
-  }
-
-  Rig rig_;
-  Eye left_;
-  Eye right_;
+  Eye left;
+  Eye right;
+  Isometry3d from_left;
 };
 
 // How a rig is drawn. Lengths are shares of the baseline, angles in degrees.
@@ -204,35 +197,37 @@ CameraModel random_camera(SplitMix& random, const Rig& rig, double angle, double
 // The grid goes from the middle of the common view towards a border. At the first four positions, and at
 // every second of the others, it goes nearly as far as it can. The directions in which it goes and leans
 // depend on the number of the position, so that they differ.
-std::optional<Isometry3d> random_pose(SplitMix& random, const Views& views, const GridShape& grid, int number,
-                                      const Arrangement& its, double near, const Rig& rig) {
-  constexpr int kTries = 30;
-  for (int attempt = 0; attempt < kTries; ++attempt) {
+Isometry3d random_pose(SplitMix& random, const Views& views, const FaultyRig& made, const Arrangement& its,
+                       double near) {
+  const auto number = static_cast<int>(made.poses.size());
+  return first_of(30, [&]() -> std::optional<Isometry3d> {
     const double depth = near * random.between(1, its.farthest);
     const double goes = kPi / 4 * (2 * number + 1) + random.between(-0.6, 0.6);
     const double leans = 1.7 * number + random.between(-0.6, 0.6);
     const double tilt = random.between(its.least_tilt, its.most_tilt);
     const Matrix3d rotation = turned(tilt * Vector3d(std::cos(leans), std::sin(leans), 0)) *
                               turned({0, 0, random.between(-12, 12)});
-    if (its.is_sound && (rig.rotation * rotation)(2, 2) > std::cos(radians(its.least_tilt))) continue;
-    const Vector2d middle = views.overlap(depth).middle;
+    const double in_right = (made.rig.rotation * rotation)(2, 2);
+    if (its.is_sound && in_right > std::cos(radians(its.least_tilt))) return std::nullopt;
+    const std::vector<Vector2d> shared = views.shared(depth);
+    Vector2d middle = std::accumulate(shared.begin(), shared.end(), Vector2d(0, 0));
+    if (!shared.empty()) middle /= static_cast<double>(shared.size());
     const auto at = [&](double way) {
       const Vector2d direction = middle + way * Vector2d(std::cos(goes), 0.7 * std::sin(goes));
-      return pose_of(grid, rotation, depth * direction.homogeneous());
+      return pose_of(made.grid, rotation, depth * direction.homogeneous());
     };
-    const auto is_seen = [&](double way) { return views.grid(grid, at(way), at(way)).has_value(); };
-    if (!is_seen(0)) continue;
+    const auto is_seen = [&](double way) { return views.grid(made.grid, at(way), at(way)).has_value(); };
+    if (!is_seen(0)) return std::nullopt;
     double seen = 0;
     for (double step = 2; step > 1e-3; step /= 2) {
       if (is_seen(seen + step)) seen += step;
     }
     const double way = seen * random.between(number < 4 || number % 2 == 0 ? 0.9 : 0, 1);
-    if (is_seen(way)) return at(way);
-  }
-  return std::nullopt;
+    return is_seen(way) ? std::optional(at(way)) : std::nullopt;
+  });
 }
 
-bool board_can_hold(const FaultyRig& made) {
+void check_disparities(const FaultyRig& made) {
   constexpr int kMostCandidates = 254;
   constexpr int kMostOffset = 2048;
   const Rectification rectification = rectify(made.rig);
@@ -244,11 +239,12 @@ bool board_can_hold(const FaultyRig& made) {
       range.max = std::max(range.max, flat.left[i].x() - flat.right[i].x());
     }
   }
-  return range.needed() <= kMostCandidates &&
-         std::abs(disparity_offset_for(range, kMostCandidates)) <= kMostOffset;
+  if (std::abs(disparity_offset_for(range, kMostCandidates)) > kMostOffset)
+    throw std::domain_error("random rig: no board has this offset");
 }
 
-// Nullopt if a rule is broken.
+// Nullopt if a rule is broken: a lens folds the picture over, no pose is found, or no board can hold the
+// disparities.
 std::optional<FaultyRig> try_rig(SplitMix& random, double angle, const Arrangement& its) try {
   FaultyRig made;
   Rig& rig = made.rig;
@@ -266,11 +262,10 @@ std::optional<FaultyRig> try_rig(SplitMix& random, double angle, const Arrangeme
   rig.translation = -rig.rotation * (baseline * about_it.normalized());
 
   const Views views(rig);
-  if (!views.are_one_to_one()) return std::nullopt;
   const double focal = rig.left.matrix(0, 0);
   const double near = focal * baseline / (random.between(0.06, 0.3) * rig.width);
   for (const double depth : {near, near * its.farthest}) {
-    if (its.is_sound && views.overlap(depth).share < 0.5) return std::nullopt;
+    if (its.is_sound && 2 * views.shared(depth).size() < views.left.directions().size()) return std::nullopt;
   }
   grid.columns = whole(random, 5, 11);
   grid.rows = whole(random, 4, 8);
@@ -278,63 +273,56 @@ std::optional<FaultyRig> try_rig(SplitMix& random, double angle, const Arrangeme
   grid.square_mm = random.between(0.3, 0.55) * middle / focal *
                    std::min(1.0 * rig.width / (grid.columns - 1), 1.0 * rig.height / (grid.rows - 1));
   if (!problems(grid).empty()) return std::nullopt;
-  for (int number = 0, count = whole(random, 6, 20); number < count; ++number) {
-    const auto pose = random_pose(random, views, grid, number, its, near, rig);
-    if (!pose) return std::nullopt;
-    made.poses.push_back(*pose);
-    made.pairs.push_back(*views.grid(grid, *pose, *pose));
+  for (int left = whole(random, 6, 20); left > 0; --left) {
+    made.poses.push_back(random_pose(random, views, made, its, near));
+    made.pairs.push_back(*views.grid(grid, made.poses.back(), made.poses.back()));
   }
-  if (its.is_sound && !board_can_hold(made)) return std::nullopt;
+  if (its.is_sound) check_disparities(made);
   return made;
-} catch (const std::domain_error&) {
-  return std::nullopt;  // a lens that folds the picture over
+} catch (const std::logic_error&) {
+  return std::nullopt;
 }
 
-// Moves the grid in the right exposure of these pairs by so many mm and degrees (standard deviations). Both
-// pictures still show all of it.
-void move(SplitMix& random, FaultyRig& made, const std::vector<std::size_t>& pairs, double mm,
-          double degrees) {
-  const Views views(made.rig);
-  double squares = 0;
-  for (const std::size_t pair : pairs) {
-    const Isometry3d& pose = made.poses[pair];
-    const GridPair sound = *views.grid(made.grid, pose, pose);
-    made.pairs[pair] = first_of(1000, [&] {
-      const Vector3d place = pose.translation() + gaussian(random, mm);
-      const Matrix3d rotation = turned(gaussian(random, degrees)) * pose.linear();
-      return views.grid(made.grid, pose, Eigen::Translation3d(place) * Isometry3d(rotation));
-    });
-    for (std::size_t i = 0; i < sound.right.size(); ++i)
-      squares += (made.pairs[pair].right[i] - sound.right[i]).squaredNorm();
-  }
-  made.moved_px = std::sqrt(squares / static_cast<double>(pairs.size() * made.pairs.front().right.size()));
-}
-
-// In the right picture of one pair each corner is its neighbour in the row or in the column.
-void miscount(SplitMix& random, FaultyRig& made) {
-  const Views views(made.rig);
-  made.bad_pairs.resize(1);
-  std::size_t& pair = made.bad_pairs.front();
-  const GridPair wrong = first_of(1000, [&] {
-    pair = any(random, made.pairs.size());
-    Vector3d step = Vector3d::Zero();
-    step[whole(random, 0, 1)] = sign(random) * made.grid.square_mm;
-    return views.grid(made.grid, made.poses[pair], made.poses[pair] * Eigen::Translation3d(step));
-  });
-  made.pairs[pair] = wrong;
-}
-
-// What goes wrong before the pictures are taken. The movement grows until it is `least_px`.
+// What goes wrong before the pictures are taken: in the right exposure the grid is elsewhere, or the detector
+// counts from its next row or column. Both pictures still show all of it. The movement (standard deviations)
+// grows until it is `least_px`.
 void spoil_scene(SplitMix& random, FaultyRig& made, Fault fault, double mm, double degrees, double least_px) {
-  if (fault == Fault::kOneMiscounted) miscount(random, made);
+  const Views views(made.rig);
+  const auto elsewhere = [&](std::size_t pair, const Isometry3d& pose) {
+    return views.grid(made.grid, made.poses[pair], pose);
+  };
+  if (fault == Fault::kOneMiscounted) {
+    std::size_t pair = 0;
+    const GridPair wrong = first_of(1000, [&] {
+      pair = any(random, made.pairs.size());
+      Vector3d step = Vector3d::Zero();
+      step[whole(random, 0, 1)] = sign(random) * made.grid.square_mm;
+      return elsewhere(pair, made.poses[pair] * Eigen::Translation3d(step));
+    });
+    made.pairs[pair] = wrong;
+    made.bad_pairs = {pair};
+  }
   const bool is_some = fault == Fault::kSomeMoved;
+  if (!is_some && fault != Fault::kMoved && fault != Fault::kMovedLittle) return;
   std::vector<std::size_t> moved;
   for (std::size_t pair = is_some ? any(random, 6) : 0; pair < made.pairs.size(); pair += is_some ? 6 : 1)
     moved.push_back(pair);
   if (is_some) made.bad_pairs = moved;
-  if (!is_some && fault != Fault::kMoved && fault != Fault::kMovedLittle) return;
-  for (double factor = 1; made.moved_px <= least_px; factor *= 1.2)
-    move(random, made, moved, factor * mm, factor * degrees);
+  const std::vector<GridPair> sound = made.pairs;
+  for (double factor = 1; made.moved_px <= least_px; factor *= 1.2) {
+    double squares = 0;
+    for (const std::size_t pair : moved) {
+      const Isometry3d& pose = made.poses[pair];
+      made.pairs[pair] = first_of(1000, [&] {
+        const Vector3d place = pose.translation() + gaussian(random, factor * mm);
+        const Matrix3d rotation = turned(gaussian(random, factor * degrees)) * pose.linear();
+        return elsewhere(pair, Eigen::Translation3d(place) * Isometry3d(rotation));
+      });
+      for (std::size_t i = 0; i < sound[pair].right.size(); ++i)
+        squares += (made.pairs[pair].right[i] - sound[pair].right[i]).squaredNorm();
+    }
+    made.moved_px = std::sqrt(squares / (1.0 * made.grid.corners() * static_cast<double>(moved.size())));
+  }
 }
 
 // What goes wrong with the files: some are lost on each side, at different positions.
@@ -403,31 +391,20 @@ FaultyRig photographed(SplitMix& random, FaultyRig made, Fault fault, double noi
   return made;
 }
 
-// A pose of the grid of the known rig.
-Isometry3d made_pose(SplitMix& random, const FaultyRig& made, Fault fault) {
-  if (fault == Fault::kTurnedFar) {
-    const Vector3d in_right = Vector3d(0, 0, 825) + uniform(random, {60, 50, 75});
-    const Vector3d middle = made.rig.rotation.transpose() * (in_right - made.rig.translation);
-    return pose_of(made.grid, turned(uniform(random, {25, 25, 10})),
-                   middle.cwiseProduct(Vector3d(0.8, 1, 1)));
-  }
-  Vector3d most_turn(28, 28, 12);
-  Vector3d centre(40, 0, 565);
-  Vector3d spread(130, 90, 185);
-  if (fault == Fault::kVertical) centre = {0, 30, 565};
-  if (fault == Fault::kHardlyTilted) {
-    most_turn = {5, 5, 12};
-    centre.z() = 580;
-    spread.z() = 20;
-  }
-  if (fault == Fault::kFrontal) {
-    most_turn = {0, 0, 3};
-    centre.x() = 0;
-    spread = {60, 40, 0};
-  }
-  Vector3d middle = uniform(random, spread);
-  middle.head<2>() *= (centre.z() + middle.z()) / 550;
-  return pose_of(made.grid, turned(uniform(random, most_turn)), centre + middle);
+// Where the grid of the known rig stands, and how it is turned: centres and largest deviations.
+struct Stand {
+  std::size_t positions;
+  Vector3d turn;    // degrees
+  Vector3d centre;  // mm, of kTurnedFar from the right camera
+  Vector3d spread;
+};
+
+Stand stand_of(Fault fault) {
+  if (fault == Fault::kTurnedFar) return {8, {25, 25, 10}, {0, 0, 825}, {60, 50, 75}};
+  if (fault == Fault::kVertical) return {12, {28, 28, 12}, {0, 30, 565}, {130, 90, 185}};
+  if (fault == Fault::kHardlyTilted) return {8, {5, 5, 12}, {40, 0, 580}, {130, 90, 20}};
+  if (fault == Fault::kFrontal) return {12, {0, 0, 3}, {0, 0, 565}, {60, 40, 0}};
+  return {12, {28, 28, 12}, {40, 0, 565}, {130, 90, 185}};
 }
 
 }  // namespace
@@ -445,28 +422,32 @@ FaultyRig faulty_rig(std::uint64_t seed, double noise_px, Fault fault) {
   return photographed(random, std::move(made), fault, noise_px);
 }
 
-RandomRig random_rig(std::uint64_t seed, double noise_px) {
-  const FaultyRig made = faulty_rig(seed, noise_px, Fault::kNone);
-  return {made.rig, made.grid, made.poses, made.pairs};
-}
+RandomRig random_rig(std::uint64_t seed, double noise_px) { return faulty_rig(seed, noise_px, Fault::kNone); }
 
 FaultyRig made_rig(std::uint64_t seed, Fault fault) {
   SplitMix random(mixed(seed));
+  const bool is_far = fault == Fault::kTurnedFar;
   FaultyRig made;
   made.grid = {9, 6, 25};
-  made.rig.width = 640;
-  made.rig.height = 480;
-  made.rig.left.matrix << 520, 0, 320, 0, 520, 240, 0, 0, 1;
-  if (fault != Fault::kTurnedFar) made.rig.left.distortion = {-0.2, 0.05};
-  made.rig.right = made.rig.left;
+  Rig& rig = made.rig;
+  rig.width = 640;
+  rig.height = 480;
+  rig.left.matrix << 520, 0, 320, 0, 520, 240, 0, 0, 1;
+  if (!is_far) rig.left.distortion = {-0.2, 0.05};
+  rig.right = rig.left;
   const Arrangement its = arrangement_of(fault, 1);
-  made.rig.rotation = its.rotation;
-  made.rig.translation = (fault == Fault::kTurnedFar ? -411.2 : -80) * (its.rotation * its.place);
-  const Views views(made.rig);
-  const std::size_t count = fault == Fault::kTurnedFar || fault == Fault::kHardlyTilted ? 8 : 12;
-  while (made.pairs.size() < count) {
+  rig.rotation = its.rotation;
+  rig.translation = (is_far ? -411.2 : -80) * (its.rotation * its.place);
+  const Views views(rig);
+  const Stand stand = stand_of(fault);
+  while (made.pairs.size() < stand.positions) {
     made.pairs.push_back(first_of(1000, [&] {
-      const Isometry3d pose = made_pose(random, made, fault);
+      Vector3d middle = uniform(random, stand.spread);
+      if (!is_far) middle.head<2>() *= (stand.centre.z() + middle.z()) / 550;
+      middle += stand.centre;
+      if (is_far)
+        middle = (rig.rotation.transpose() * (middle - rig.translation)).cwiseProduct(Vector3d(0.8, 1, 1));
+      const Isometry3d pose = pose_of(made.grid, turned(uniform(random, stand.turn)), middle);
       const auto seen = views.grid(made.grid, pose, pose);
       if (seen) made.poses.push_back(pose);
       return seen;

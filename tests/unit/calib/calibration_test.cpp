@@ -27,6 +27,8 @@ Calibration calibration() {
   made.disparity_offset = -7;
   made.quality = {0.1,         0.2, 1 / 3.0, {0.3, 0.4, 500}, {0.5, 0.6, 400}, HeldOut{0.7, {0.8, 0.9, 500}},
                   {1.25, 99.5}};
+  made.certainty =
+      Certainty{0.1, 0.2, true, 1 / 7.0, 0.4, 0.5, 0.6, 33.3, {{500, 1.5, 2.5}, {900, 3, 1 / 9.0}}};
   made.sources = {{"a: b.jpg", "right \"1\".jpg", 54}, {"left2.jpg", "right2.jpg", 0}};
   made.left_lut_sha256 = std::string(64, 'a');
   made.right_lut_sha256 = std::string(64, '0');
@@ -77,6 +79,19 @@ TEST(CalibrationYaml, HoldsTheKeysOfOpenCVsSample) {
 TEST(CalibrationYaml, IsReadToTheLastBit) {
   const std::string text = calibration_yaml(calibration());
   EXPECT_EQ(calibration_yaml(parse_calibration(text)), text);
+}
+
+TEST(CalibrationYaml, HoldsTheCertainty) {
+  const Calibration read = parse_calibration(calibration_yaml(calibration()));
+  ASSERT_TRUE(read.certainty);
+  const Certainty& its = *read.certainty;
+  EXPECT_THAT((std::vector{its.alone_rms_px, its.rig_rms_px, its.focal_sigma_px, its.centre_sigma_px,
+                           its.baseline_sigma_mm, its.turn_sigma_deg, its.tilt_deg}),
+              testing::ElementsAre(0.1, 0.2, 1 / 7.0, 0.4, 0.5, 0.6, 33.3));
+  EXPECT_TRUE(its.lenses_are_kept);
+  ASSERT_EQ(its.depths.size(), 2U);
+  EXPECT_THAT((std::vector{its.depths[1].depth_mm, its.depths[1].rounding_mm, its.depths[1].calibration_mm}),
+              testing::ElementsAre(900, 3, 1 / 9.0));
 }
 
 TEST(CalibrationYaml, IsReadWithoutHeldOutPairs) {
