@@ -73,25 +73,14 @@ TEST(CalibrationYaml, HoldsTheKeysOfOpenCVsSample) {
   EXPECT_EQ(static_cast<double>(file["grid"]["square_mm"]), 25.4);
   EXPECT_EQ(static_cast<std::string>(file["left_lut_sha256"]), made.left_lut_sha256);
   EXPECT_EQ(static_cast<double>(file["quality"]["row_error"]["max_px"]), 0.4);
+  EXPECT_EQ(static_cast<double>(file["certainty"]["focal_sigma_px"]), 1 / 7.0);
+  EXPECT_EQ(static_cast<double>(file["certainty"]["depth_errors"][1]["calibration_mm"]), 1 / 9.0);
   EXPECT_EQ(static_cast<std::string>(file["sources"][0]["right"]), "right \"1\".jpg");
 }
 
 TEST(CalibrationYaml, IsReadToTheLastBit) {
   const std::string text = calibration_yaml(calibration());
   EXPECT_EQ(calibration_yaml(parse_calibration(text)), text);
-}
-
-TEST(CalibrationYaml, HoldsTheCertainty) {
-  const Calibration read = parse_calibration(calibration_yaml(calibration()));
-  ASSERT_TRUE(read.certainty);
-  const Certainty& its = *read.certainty;
-  EXPECT_THAT((std::vector{its.alone_rms_px, its.rig_rms_px, its.focal_sigma_px, its.centre_sigma_px,
-                           its.baseline_sigma_mm, its.turn_sigma_deg, its.tilt_deg}),
-              testing::ElementsAre(0.1, 0.2, 1 / 7.0, 0.4, 0.5, 0.6, 33.3));
-  EXPECT_TRUE(its.lenses_are_kept);
-  ASSERT_EQ(its.depths.size(), 2U);
-  EXPECT_THAT((std::vector{its.depths[1].depth_mm, its.depths[1].rounding_mm, its.depths[1].calibration_mm}),
-              testing::ElementsAre(900, 3, 1 / 9.0));
 }
 
 TEST(CalibrationYaml, IsReadWithoutHeldOutPairs) {
