@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <utility>
@@ -16,28 +17,37 @@
 namespace stereotlm::calib {
 namespace {
 
-// Finds the grids. Skips a pair unless the grid is found in both of its pictures.
+// Finds the grids, in both pictures of a pair at a time. Skips a pair unless the grid is found in both.
 void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
-  const auto search = [&](const kernels::GrayImage& picture, const std::string& name) {
-    GridSearch found = find_grid(picture, request.grid);
-    if (!found.corners) result.skipped.push_back(fmt::format("'{}': {}", name, found.problem));
-    return std::move(found.corners);
+  std::size_t searched = 0;
+  const auto report = [&](const PicturePair& pair, bool is_left, const GridSearch& found) {
+    const char* half = pair.left_name != pair.right_name ? "" : is_left ? " (left half)" : " (right half)";
+    const std::string text = fmt::format("'{}'{}: {}", is_left ? pair.left_name : pair.right_name, half,
+                                         found.corners ? "found" : found.problem);
+    if (!found.corners) result.skipped.push_back(text);
+    ++searched;
+    if (request.progress) request.progress(searched, text);
   };
   for (std::size_t i = 0; i < request.pictures.size(); ++i) {
     const PicturePair& pair = request.pictures[i];
-    const auto left = search(pair.left, pair.left_name);
-    const auto right = search(pair.right, pair.right_name);
-    if (!left || !right) continue;
-    result.pairs.push_back({i, {*left, ordered_like(*left, request.grid, *right)}, {}});
+    auto search = std::async(std::launch::async, [&] { return find_grid(pair.left, request.grid); });
+    const GridSearch right = find_grid(pair.right, request.grid);
+    const GridSearch left = search.get();
+    report(pair, true, left);
+    report(pair, false, right);
+    if (!left.corners || !right.corners) continue;
+    result.pairs.push_back(
+        {i, {*left.corners, ordered_like(*left.corners, request.grid, *right.corners)}, {}});
   }
   if (result.pairs.size() >= kFewestPairs) return;
   std::string reasons;
   for (const std::string& reason : result.skipped) reasons += "\n  " + reason;
+  const char* hint = request.grid.pattern != Pattern::kChessboard
+                         ? ""
+                         : "; an inner corner is where four squares meet: a board of 10x7 squares has 9x6";
   throw std::invalid_argument(fmt::format(
-      "pairs with a grid of {}x{} inner corners in both pictures = {} of {}: must be {} or more; an inner "
-      "corner is where four squares meet: a board of 10x7 squares has 9x6{}",
-      request.grid.columns, request.grid.rows, result.pairs.size(), request.pictures.size(), kFewestPairs,
-      reasons));
+      "pairs with a grid of {} in both pictures = {} of {}: must be {} or more{}{}", request.grid.text(),
+      result.pairs.size(), request.pictures.size(), kFewestPairs, hint, reasons));
 }
 
 // What no offset can mend.
@@ -88,7 +98,7 @@ bool all_inside(const kernels::GrayImage& picture, const Corners& corners) {
 }
 
 // The row error of corners that are found in the rectified pictures. Only pairs whose corners all lie in both
-// rectified pictures count.
+// rectified pictures, and are found there, count.
 RowError found_again(const CalibrationRequest& request, const CalibrationResult& result) {
   const Calibration& made = result.calibration;
   std::vector<double> errors;
@@ -99,10 +109,11 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
     GridPair corners = rectified(made.rig, made.rectification, pair.corners);
     for (Eigen::Vector2d& corner : corners.left) corner.x() -= made.disparity_offset;
     if (!all_inside(left, corners.left) || !all_inside(right, corners.right)) continue;
-    corners.left = refined(left, request.grid, corners.left);
-    corners.right = refined(right, request.grid, corners.right);
+    const auto found_left = found_near(left, request.grid, corners.left);
+    const auto found_right = found_near(right, request.grid, corners.right);
+    if (!found_left || !found_right) continue;
     for (std::size_t i = 0; i < pair.used.size(); ++i) {
-      if (pair.used[i]) errors.push_back(corners.left[i].y() - corners.right[i].y());
+      if (pair.used[i]) errors.push_back((*found_left)[i].y() - (*found_right)[i].y());
     }
   }
   return row_error(errors);
@@ -151,6 +162,26 @@ std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit&
 double between(double before, double largest, double after) {
   const double bend = before - 2 * largest + after;
   return bend < 0 ? 0.5 * (before - after) / bend : 0;
+}
+
+// How much a pattern is like each place of a picture: its correlation.
+struct Likeness {
+  cv::Mat map;         // by the place of the pattern's top left pixel
+  double largest = 0;  // in the map
+  double second = 0;   // the largest that is not beside the largest
+  cv::Point at;        // of the largest
+};
+
+Likeness likeness_of(const cv::Mat& pattern, const cv::Mat& picture) {
+  constexpr int kBeside = 3;  // pixels
+  Likeness result;
+  cv::matchTemplate(picture, pattern, result.map, cv::TM_CCOEFF_NORMED);
+  cv::minMaxLoc(result.map, nullptr, &result.largest, nullptr, &result.at);
+  cv::Mat others = result.map.clone();
+  const cv::Rect beside(result.at.x - kBeside, result.at.y - kBeside, 2 * kBeside + 1, 2 * kBeside + 1);
+  others(beside & cv::Rect({0, 0}, others.size())) = -1;
+  cv::minMaxLoc(others, nullptr, &result.second);
+  return result;
 }
 
 }  // namespace
@@ -209,7 +240,9 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
   constexpr int kMostPoints = 150;
   constexpr int kReach = 7;     // pixels of the window to each side of a point
   constexpr int kMostRows = 8;  // rows that are searched above and below
-  constexpr float kLeastCorrelation = 0.9F;
+  constexpr double kLeastCorrelation = 0.9;
+  constexpr double kMostAlike = 0.8;      // correlation with another place of the left picture
+  constexpr double kClearlyBetter = 0.6;  // what the best place lacks, as a part of what the second one lacks
   constexpr double kQuality = 0.02;
   constexpr double kDistance = 16;
   std::vector<cv::Point2f> points;
@@ -226,16 +259,18 @@ MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImag
     const cv::Rect inside = searched & picture;
     if ((window & picture) != window || inside.height != searched.height || inside.width < window.width)
       continue;
+    const cv::Mat pattern = view(left)(window);
+    const cv::Rect around(inside.x, inside.y, inside.width + disparities - 1, inside.height);
+    if (likeness_of(pattern, view(left)(around & picture)).second > kMostAlike) continue;
+    const Likeness found = likeness_of(pattern, view(right)(inside));
+    const bool is_found = found.largest >= kLeastCorrelation && found.at.y > 0 && found.at.y < 2 * kMostRows;
+    if (is_found && 1 - found.largest > kClearlyBetter * (1 - found.second)) continue;
     ++result.points;
-    cv::Mat likeness;
-    cv::matchTemplate(view(right)(inside), view(left)(window), likeness, cv::TM_CCOEFF_NORMED);
-    double largest = 0;
-    cv::Point at;
-    cv::minMaxLoc(likeness, nullptr, &largest, nullptr, &at);
-    if (!(largest >= kLeastCorrelation) || at.y == 0 || at.y == likeness.rows - 1) continue;
-    const double rest =
-        between(likeness.at<float>(at.y - 1, at.x), largest, likeness.at<float>(at.y + 1, at.x));
-    errors.push_back(window.y - (inside.y + at.y + rest));
+    if (!is_found) continue;
+    const auto at = [&found](int place) { return found.map.at<float>(place, found.at.x); };
+    const double rest = between(at(found.at.y - 1), found.largest, at(found.at.y + 1));
+    errors.push_back(window.y - (inside.y + found.at.y + rest));
+    result.in_row += std::abs(found.at.y - kMostRows) <= 1 ? 1U : 0U;
   }
   result.error = row_error(errors);
   return result;

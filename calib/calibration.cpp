@@ -132,6 +132,15 @@ class Reader {
     return camera;
   }
 
+  // Of a grid. Earlier files, of chessboards, have no such key.
+  Pattern pattern() const {
+    if (!has("pattern")) return Pattern::kChessboard;
+    const auto found = pattern_named(text("pattern"));
+    if (!found)
+      refuse("pattern", text("pattern"), fmt::format("must be one of {}", fmt::join(kPatternNames, ", ")));
+    return *found;
+  }
+
   RowError row_error(const std::string& key) const {
     const Reader its = map(key);
     return {its.number("mean_px"), its.number("max_px"), its.count("corners")};
@@ -229,7 +238,7 @@ Calibration calibration_of(const Reader& file) {
   }
   const Reader grid = file.map("grid");
   result.grid = {grid.integer("columns", 1, kMostPixels), grid.integer("rows", 1, kMostPixels),
-                 grid.number("square_mm")};
+                 grid.number("square_mm"), grid.pattern()};
   result.sources = sources_of(file);
   result.quality = quality_of(file.map("quality"));
   if (file.has("certainty")) result.certainty = certainty_of(file.map("certainty"));

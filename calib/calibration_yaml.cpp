@@ -87,7 +87,8 @@ std::string calibration_yaml(const Calibration& calibration) {
   file << "grid"
        << "{"
        << "columns" << calibration.grid.columns << "rows" << calibration.grid.rows << "square_mm"
-       << calibration.grid.square_mm << "}";
+       << calibration.grid.square_mm << "pattern"
+       << kPatternNames[static_cast<std::size_t>(calibration.grid.pattern)] << "}";
   write(file, calibration.sources);
   write(file, calibration.quality);
   if (calibration.certainty) write(file, *calibration.certainty);

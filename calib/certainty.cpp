@@ -124,6 +124,7 @@ Certainty certainty_of(const RigFit& fit, const RigCovariance& covariance) {
   Certainty result;
   result.alone_rms_px = fit.evidence.alone_rms_px;
   result.rig_rms_px = fit.evidence.rig_rms_px;
+  result.tilt_deg = fit.evidence.tilt_deg;
   result.lenses_are_kept = fit.evidence.lenses_are_kept;
   for (const int first : {0, kCamera}) {
     result.focal_sigma_px = std::max({result.focal_sigma_px, sigma(first), sigma(first + 1)});
@@ -132,11 +133,6 @@ Certainty certainty_of(const RigFit& fit, const RigCovariance& covariance) {
   const Eigen::Vector3d along = fit.rig.translation.normalized();
   result.baseline_sigma_mm = std::sqrt(along.dot(covariance.block<3, 3>(kTranslation, kTranslation) * along));
   result.turn_sigma_deg = kDegrees * std::max({sigma(kRotation), sigma(kRotation + 1), sigma(kRotation + 2)});
-  for (std::size_t pair = 0; pair < fit.used.size(); ++pair) {
-    if (std::find(fit.used[pair].begin(), fit.used[pair].end(), true) == fit.used[pair].end()) continue;
-    const double cosine = std::abs(fit.misfits[pair].pose.linear()(2, 2));
-    result.tilt_deg = std::max(result.tilt_deg, kDegrees * std::acos(std::min(1.0, cosine)));
-  }
   return result;
 }
 

@@ -17,12 +17,7 @@ namespace {
 std::string worst_pairs(const GridViews& views, const RigFit& fit) {
   constexpr std::size_t kMost = 3;
   std::vector<std::pair<double, std::size_t>> misfits;
-  for (std::size_t i = 0; i < fit.misfits.size(); ++i) {
-    double squares = 0;
-    for (const std::vector<double>* side : {&fit.misfits[i].left, &fit.misfits[i].right})
-      for (const double distance : *side) squares += distance * distance;
-    misfits.emplace_back(std::sqrt(squares / (2.0 * views.shape.corners())), i);
-  }
+  for (std::size_t i = 0; i < fit.misfits.size(); ++i) misfits.emplace_back(fit.misfits[i].rms_px(), i);
   std::sort(misfits.rbegin(), misfits.rend());
   std::string text;
   for (std::size_t i = 0; i < std::min(kMost, misfits.size()); ++i) {

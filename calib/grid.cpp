@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <limits>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -31,18 +32,30 @@ double smallest_spacing(const GridShape& shape, const Corners& corners) {
   return smallest;
 }
 
-Corners to_corners(const std::vector<cv::Point2f>& points) {
+// Reduces a picture whose longer side exceeds `longest` pixels, which bounds the time of a search. Returns
+// the factor, 0..1.
+double reduce(const kernels::GrayImage& picture, int longest, cv::Mat& reduced) {
+  const double scale = std::min(1.0, static_cast<double>(longest) / std::max(picture.width, picture.height));
+  cv::resize(view(picture), reduced, {}, scale, scale, cv::INTER_AREA);
+  return scale;
+}
+
+// The corners at these points of a picture that was reduced by the factor `scale`.
+Corners to_corners(const std::vector<cv::Point2f>& points, double scale = 1) {
   Corners corners;
-  for (const cv::Point2f& point : points) corners.emplace_back(point.x, point.y);
+  for (const cv::Point2f& point : points)
+    corners.emplace_back((point.x + 0.5) / scale - 0.5, (point.y + 0.5) / scale - 0.5);
   return corners;
 }
 
-// The corners of a square board that is turned by 90 degrees: (column, row) is seen at (row, last - column).
-Corners turned_by_quarter(const GridShape& shape, const Corners& corners) {
-  Corners turned;
+// The corners of a grid, of which OpenCV took the columns for the rows: those of a grid turned by 90 degrees.
+// The corner (column, row) is at (row, last - column).
+template <typename Point>
+std::vector<Point> turned_by_quarter(const GridShape& shape, const std::vector<Point>& corners) {
+  std::vector<Point> turned;
   for (int row = 0; row < shape.rows; ++row) {
     for (int column = 0; column < shape.columns; ++column) {
-      turned.push_back(corners[index_of(shape, row, shape.columns - 1 - column)]);
+      turned.push_back(corners[static_cast<std::size_t>((shape.columns - 1 - column) * shape.rows + row)]);
     }
   }
   return turned;
@@ -162,22 +175,87 @@ class BoardCheck {
   Eigen::Matrix3d without_lens_;  // homography from columns and rows of corners to pixels
 };
 
+// The corners of the chessboard to a few pixels. The first detector, of quadrangles, searches a reduced
+// picture. Its adaptive thresholds take seconds if they find no chessboard, so they are used only where
+// thresholds for the whole picture, which take less than 0.1 s, have found one. The second detector, of
+// Duda and Frese (2018), finds chessboards that are blurred, grainy or small, and takes 0.6 s at most.
+std::optional<Corners> roughly_found(const kernels::GrayImage& picture, const GridShape& shape) {
+  constexpr int kLongestSide = 640;
+  cv::Mat reduced;
+  const double scale = reduce(picture, kLongestSide, reduced);
+  const cv::Size size(shape.columns, shape.rows);
+  std::vector<cv::Point2f> points;
+  const auto is_found = [&](int flags) { return cv::findChessboardCorners(reduced, size, points, flags); };
+  if (is_found(cv::CALIB_CB_FAST_CHECK) &&
+      is_found(cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
+    return to_corners(points, scale);
+  if (cv::findChessboardCornersSB(view(picture), size, points)) return to_corners(points);
+  return std::nullopt;
+}
+
+// The circles of the grid among dots, at the positions of the dots.
+std::optional<std::vector<cv::Point2f>> circles_among(const std::vector<cv::Point2f>& dots,
+                                                      const GridShape& shape) {
+  if (dots.size() < static_cast<std::size_t>(shape.corners())) return std::nullopt;
+  const bool is_symmetric = shape.pattern == Pattern::kCircles;
+  const int flags = is_symmetric ? cv::CALIB_CB_SYMMETRIC_GRID : cv::CALIB_CB_ASYMMETRIC_GRID;
+  std::vector<cv::Point2f> circles;
+  const auto are_found = [&](const cv::Size& size) {
+    return cv::findCirclesGrid(dots, size, circles, flags, cv::Ptr<cv::FeatureDetector>());
+  };
+  if (are_found({shape.columns, shape.rows})) return circles;
+  // OpenCV takes the more horizontal lines of a symmetric grid for its rows.
+  if (is_symmetric && are_found({shape.rows, shape.columns})) return turned_by_quarter(shape, circles);
+  return std::nullopt;
+}
+
+GridSearch find_circles(const kernels::GrayImage& picture, const GridShape& shape) {
+  constexpr int kLongestSide = 1280;
+  constexpr std::size_t kMostDots = 400;  // the search takes 2 s with them, and the cube of their number
+  cv::Mat reduced;
+  const double scale = reduce(picture, kLongestSide, reduced);
+  cv::SimpleBlobDetector::Params limits;
+  limits.maxArea = static_cast<float>(reduced.total()) / static_cast<float>(shape.corners());
+  std::vector<cv::KeyPoint> found;
+  cv::SimpleBlobDetector::create(limits)->detect(reduced, found);
+  std::vector<cv::Point2f> dots;
+  cv::KeyPoint::convert(found, dots);
+  if (dots.size() > kMostDots) {
+    return {std::nullopt, fmt::format("{} dark dots: must be {} at most, to find a grid of {} among them",
+                                      dots.size(), kMostDots, shape.text())};
+  }
+  const auto circles = circles_among(dots, shape);
+  if (!circles) return {std::nullopt, fmt::format("no grid of {} found", shape.text())};
+  const auto is_larger = [&](int columns, int rows) {
+    return circles_among(dots, {columns, rows, shape.square_mm, shape.pattern}).has_value();
+  };
+  if (is_larger(shape.columns + 1, shape.rows) || is_larger(shape.columns, shape.rows + 1))
+    return {std::nullopt, fmt::format("the grid has more than {}", shape.text())};
+  return {to_corners(*circles, scale), ""};
+}
+
 }  // namespace
 
 GridSearch find_grid(const kernels::GrayImage& picture, const GridShape& shape) {
   constexpr int kSmallest = 16;  // pixels each way: the least that OpenCV's search accepts
-  std::vector<cv::Point2f> points;
-  if (std::min(picture.width, picture.height) < kSmallest ||
-      !cv::findChessboardCorners(view(picture), {shape.columns, shape.rows}, points,
-                                 cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
-    return {std::nullopt, fmt::format("no grid of {}x{} inner corners found", shape.columns, shape.rows)};
-  }
-  const Corners corners = refined(picture, shape, to_corners(points));
+  const std::string none = fmt::format("no grid of {} found", shape.text());
+  if (std::min(picture.width, picture.height) < kSmallest) return {std::nullopt, none};
+  if (shape.pattern != Pattern::kChessboard) return find_circles(picture, shape);
+  const std::optional<Corners> found = roughly_found(picture, shape);
+  if (!found) return {std::nullopt, none};
+  const Corners corners = refined(picture, shape, *found);
   if (!are_all_of_board(picture, shape, corners)) {
-    return {std::nullopt, fmt::format("the grid has more than {}x{} inner corners, or is not seen well",
-                                      shape.columns, shape.rows)};
+    return {std::nullopt, fmt::format("the grid has more than {}, or is not seen well", shape.text())};
   }
   return {corners, ""};
+}
+
+std::optional<Corners> found_near(const kernels::GrayImage& picture, const GridShape& shape,
+                                  const Corners& near) {
+  if (shape.pattern == Pattern::kChessboard) return refined(picture, shape, near);
+  const GridSearch found = find_grid(picture, shape);
+  if (!found.corners) return std::nullopt;
+  return ordered_like(near, shape, *found.corners);
 }
 
 bool are_all_of_board(const kernels::GrayImage& picture, const GridShape& shape, const Corners& corners) {
@@ -203,6 +281,7 @@ Corners refined(const kernels::GrayImage& picture, const GridShape& shape, const
 }
 
 Corners ordered_like(const Corners& other, const GridShape& shape, const Corners& corners) {
+  if (shape.pattern == Pattern::kAsymmetricCircles) return corners;
   std::vector<Corners> orders = {corners, Corners(corners.rbegin(), corners.rend())};
   if (shape.columns == shape.rows) {
     orders.push_back(turned_by_quarter(shape, corners));

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <map>
 #include <opencv2/core.hpp>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -60,43 +61,34 @@ void add(Fields& fields, const Field& field) {
   refuse(field, "another value", fmt::format("must be that of '{}'", known->second.place));
 }
 
+void add_values(const YAML::Node& node, Field& field) {
+  if (node.IsSequence()) {
+    for (const YAML::Node& item : node) add_values(item, field);
+  }
+  if (!node.IsScalar()) return;
+  field.text = node.Scalar();
+  if (const auto value = number_of(field.text)) field.numbers.push_back(*value);
+}
+
 void add(Fields& fields, const std::string& place, const std::string& name, const YAML::Node& node) {
   Field field{place, name, {}, {}};
-  const auto add_numbers = [&field](const auto& self, const YAML::Node& each) -> void {
-    if (each.IsSequence()) {
-      for (const YAML::Node& item : each) self(self, item);
-    } else if (each.IsScalar()) {
-      if (const auto value = number_of(each.Scalar())) field.numbers.push_back(*value);
-      field.text = each.Scalar();
-    }
-  };
-  if (node.IsMap()) {
-    for (const auto& entry : node) {
-      const std::string key = entry.first.Scalar();
-      const bool is_matrix = key == "data";  // of the map that is the matrix
-      add(fields, place, is_matrix ? name : name.empty() ? key : name + '.' + key, entry.second);
-    }
-    return;
+  if (!node.IsMap()) {
+    add_values(node, field);
+    return add(fields, field);
   }
-  add_numbers(add_numbers, node);
-  add(fields, field);
+  for (const auto& entry : node) {
+    const std::string key = entry.first.Scalar();
+    const bool is_matrix = key == "data";  // of the map that is the matrix
+    add(fields, place, is_matrix ? name : name.empty() ? key : name + '.' + key, entry.second);
+  }
 }
 
 void add(Fields& fields, const std::string& place, const std::string& name, const cv::FileNode& node) {
   Field field{place, name, {}, {}};
-  if (node.isMap() && !node["data"].empty()) {
-    cv::Mat matrix;
-    node >> matrix;
-    matrix.convertTo(matrix, CV_64F);
-    field.numbers.assign(matrix.begin<double>(), matrix.end<double>());
-  } else if (node.isSeq()) {
-    for (const cv::FileNode& item : node) {
-      if (item.isInt() || item.isReal()) field.numbers.push_back(item.real());
-    }
-  } else if (node.isInt() || node.isReal()) {
-    field.numbers.push_back(node.real());
-  } else if (node.isString()) {
-    field.text = node.string();
+  const cv::FileNode values = node.isMap() ? node["data"] : node;  // of a matrix
+  if (values.isString()) field.text = values.string();
+  for (const cv::FileNode& item : values) {
+    if (item.isInt() || item.isReal()) field.numbers.push_back(item.real());
   }
   add(fields, field);
 }
@@ -176,23 +168,23 @@ Eigen::Matrix<double, kRows, kColumns> matrix_of(const Field& field) {
   if (field.numbers.size() != std::size_t{kRows * kColumns})
     refuse(field, fmt::format("{} numbers", field.numbers.size()),
            fmt::format("must be {}x{}", kRows, kColumns));
-  Eigen::Matrix<double, kRows, kColumns> result;
-  for (int i = 0; i < kRows * kColumns; ++i)
-    result(i / kColumns, i % kColumns) = field.numbers[std::size_t(i)];
+  constexpr auto kOrder = kColumns == 1 ? Eigen::ColMajor : Eigen::RowMajor;
+  const Eigen::Map<const Eigen::Matrix<double, kRows, kColumns, kOrder>> result(field.numbers.data());
   if (!result.allFinite()) refuse(field, "not finite", "must hold finite numbers");
   return result;
 }
 
-// A rotation that a file has with a few digits, made exact.
-Matrix3d rotation_of(const Field& field) {
+// A rotation that a field has with a few digits, made exact.
+Matrix3d rotation_of(const Field& field, const Matrix3d& found) {
   constexpr double kCloseEnough = 1e-3;
-  const Matrix3d found = matrix_of<3, 3>(field);
   const Eigen::JacobiSVD<Matrix3d> svd(found, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
   if ((found - rotation).norm() > kCloseEnough || rotation.determinant() < 0)
     refuse(field, "no rotation", "must be a rotation matrix");
   return rotation;
 }
+
+Matrix3d rotation_of(const Field& field) { return rotation_of(field, matrix_of<3, 3>(field)); }
 
 Matrix3d camera_matrix_of(const Field& field) {
   const Matrix3d result = matrix_of<3, 3>(field);
@@ -203,17 +195,16 @@ Matrix3d camera_matrix_of(const Field& field) {
 }
 
 void set_distortion(CameraModel& camera, const Field& field, bool is_fisheye) {
-  const std::size_t count = field.numbers.size();
-  camera.is_fisheye = is_fisheye;
-  const bool is_tilted =
-      std::any_of(field.numbers.begin() + static_cast<long>(std::min<std::size_t>(count, 12)),
-                  field.numbers.end(), [](double each) { return each != 0; });
-  if (is_tilted ||
-      (is_fisheye ? count != 4
-                  : count != 0 && count != 4 && count != 5 && count != 8 && count != 12 && count != 14))
-    refuse(field, fmt::format("{} coefficients", count),
+  const std::vector<double>& numbers = field.numbers;
+  const std::set<std::size_t> counts =
+      is_fisheye ? std::set<std::size_t>{4} : std::set<std::size_t>{0, 4, 5, 8, 12, 14};
+  const std::size_t used = std::min<std::size_t>(numbers.size(), 12);
+  const std::vector<double> tilt(numbers.begin() + static_cast<long>(used), numbers.end());
+  if (counts.count(numbers.size()) == 0 || tilt != std::vector<double>(tilt.size()))
+    refuse(field, fmt::format("{} coefficients", numbers.size()),
            is_fisheye ? "a fisheye lens has 4" : "must be 4, 5, 8 or 12, and those of a tilt 0");
-  std::copy_n(field.numbers.begin(), std::min<std::size_t>(count, 12), camera.distortion.begin());
+  camera.is_fisheye = is_fisheye;
+  std::copy_n(numbers.begin(), used, camera.distortion.begin());
 }
 
 // Whether the text names a fisheye lens, or nothing if it names none. Throws if it names another one.
@@ -227,28 +218,30 @@ bool is_fisheye_model(const Field& field) {
 }
 
 void set_size(const Reader& reader, const ImportOptions& options, Rig& rig) {
-  const Field* const both = reader.find({"imagesize", "size", "cam0.resolution", "resolution", "srect00"});
-  const Field* const width = reader.find({"imagewidth", "width"});
-  const Field* const height = reader.find({"imageheight", "height"});
-  std::optional<std::pair<double, double>> size;
-  const Field* place = both;
-  if (both != nullptr && both->numbers.size() == 2) {
-    size = {both->numbers[0], both->numbers[1]};
-  } else if (width != nullptr && height != nullptr && !width->numbers.empty() && !height->numbers.empty()) {
-    size = {width->numbers[0], height->numbers[0]};
-    place = width;
+  const Field* place = reader.find({"imagesize", "size", "cam0.resolution", "resolution", "srect00"});
+  std::vector<double> size = place != nullptr ? place->numbers : std::vector<double>();
+  if (size.size() != 2) {
+    place = reader.find({"imagewidth", "width"});
+    const Field* const height = reader.find({"imageheight", "height"});
+    size = place != nullptr ? place->numbers : std::vector<double>();
+    if (height != nullptr) size.insert(size.end(), height->numbers.begin(), height->numbers.end());
   }
-  if (!size && !options.size)
+  const bool is_known = size.size() == 2;
+  if (!is_known && !options.size)
     reader.refuse("the size of the pictures is not in it: must be given by --size WxH");
-  const auto is_length = [](double pixels) {
+  const std::vector<double> given =
+      options.size ? std::vector<double>{double(options.size->first), double(options.size->second)} : size;
+  if (!is_known) size = given;
+  const std::string found = fmt::format("{:g}x{:g}", size[0], size[1]);
+  const bool is_right = std::all_of(size.begin(), size.end(), [](double pixels) {
     return pixels >= 1 && pixels <= kMostPixels && pixels == std::floor(pixels);
-  };
-  if (size && !(is_length(size->first) && is_length(size->second)))
-    refuse(*place, fmt::format("{:g}x{:g} pixels", size->first, size->second), "must be 1..2048 each");
-  if (size && options.size && *size != std::pair<double, double>(*options.size))
-    refuse(*place, fmt::format("{}x{}", size->first, size->second), "must be that of --size");
-  rig.width = options.size ? options.size->first : static_cast<int>(size->first);
-  rig.height = options.size ? options.size->second : static_cast<int>(size->second);
+  });
+  const std::string rule = fmt::format("must be 1..{} each", kMostPixels);
+  if (!is_right && !is_known) reader.refuse(fmt::format("--size = {}: {}", found, rule));
+  if (!is_right) refuse(*place, found + " pixels", rule);
+  if (size != given) refuse(*place, found, "must be that of --size");
+  rig.width = static_cast<int>(size[0]);
+  rig.height = static_cast<int>(size[1]);
 }
 
 struct Side {
@@ -281,173 +274,140 @@ void set_place(const Matrix3d& r1, const Matrix3d& r2, const Projection& p2, Rig
   rig.translation = r2.transpose() * Vector3d(p2(0, 3) / p2(0, 0), 0, 0);
 }
 
-ImportedRig import_opencv(const Reader& reader, const ImportOptions& options) {
-  ImportedRig result{"OpenCV", {}, {}};
-  set_size(reader, options, result.rig);
+// The following functions set a rig, with T in the unit of the format. `readers`: one of all the files; of
+// ROS one of each. The size is that of the first.
+using Readers = std::vector<Reader>;
+
+void import_opencv(const Readers& readers, const ImportOptions& options, Rig& rig) {
+  const Reader& reader = readers.front();
   const Field* const model = reader.find({"distortionmodel", "lensmodel", "fisheye"});
   const bool says_fisheye =
       model != nullptr && (model->numbers.empty() ? is_fisheye_model(*model) : model->numbers.front() != 0);
-  const auto set_camera = [&](const Side& side, CameraModel& camera) {
-    camera.matrix = camera_matrix_of(
+  for (const auto& [side, camera] : {std::pair(kLeft, &rig.left), std::pair(kRight, &rig.right)}) {
+    camera->matrix = camera_matrix_of(
         reader.at(names_of(kMatrices, side), fmt::format("M{0}, K{0} or cameraMatrix{0}", side.number)));
     set_distortion(
-        camera, reader.at(names_of(kCoefficients, side), fmt::format("D{0} or distCoeffs{0}", side.number)),
+        *camera, reader.at(names_of(kCoefficients, side), fmt::format("D{0} or distCoeffs{0}", side.number)),
         options.is_fisheye.value_or(says_fisheye));
-  };
-  set_camera(kLeft, result.rig.left);
-  set_camera(kRight, result.rig.right);
+  }
   const Field* const rotation = reader.find({"r", "rotation", "rotationmatrix", "stereor"});
   const Field* const translation = reader.find({"t", "translation", "translationvector", "stereot"});
   if (rotation != nullptr && translation != nullptr) {
-    result.rig.rotation = rotation_of(*rotation);
-    result.rig.translation = matrix_of<3, 1>(*translation);
+    rig.rotation = rotation_of(*rotation);
+    rig.translation = matrix_of<3, 1>(*translation);
   } else {
     const char* const what = "R and T, or R1, R2 and P2";
     set_place(rotation_of(reader.at({"r1"}, what)), rotation_of(reader.at({"r2"}, what)),
-              matrix_of<3, 4>(reader.at({"p2"}, what)), result.rig);
+              matrix_of<3, 4>(reader.at({"p2"}, what)), rig);
   }
-  result.rig.translation *= options.unit_mm.value_or(1);
-  return result;
 }
 
-ImportedRig import_ros(const std::vector<Reader>& cameras, const ImportOptions& options) {
-  constexpr double kMillimetres = 1000;
-  if (cameras.size() != 2) cameras.front().refuse("a rig of ROS has two camera_info: --import LEFT RIGHT");
-  ImportedRig result{"ROS camera_info", {}, {}};
-  std::array<Matrix3d, 2> rotations;
-  std::array<Projection, 2> projections;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Reader& reader = cameras[i];
+void import_ros(const Readers& readers, const ImportOptions& options, Rig& rig) {
+  if (readers.size() != 2) readers.front().refuse("a rig of ROS has two camera_info: --import LEFT RIGHT");
+  std::vector<Matrix3d> rotations;
+  std::vector<Projection> projections;
+  for (const Reader& reader : readers) {
     Rig size;
     set_size(reader, options, size);
-    if (i == 1 && (size.width != result.rig.width || size.height != result.rig.height))
+    if (size.width != rig.width || size.height != rig.height)
       reader.refuse(fmt::format("{}x{} pixels: must be {}x{}, as the left camera has", size.width,
-                                size.height, result.rig.width, result.rig.height));
-    result.rig.width = size.width;
-    result.rig.height = size.height;
-    CameraModel& camera = i == 0 ? result.rig.left : result.rig.right;
+                                size.height, rig.width, rig.height));
+    CameraModel& camera = rotations.empty() ? rig.left : rig.right;
     camera.matrix = camera_matrix_of(reader.at({"cameramatrix", "k"}, "camera_matrix"));
-    const Field& model = reader.at({"distortionmodel"}, "distortion_model");
     set_distortion(camera, reader.at({"distortioncoefficients", "d"}, "distortion_coefficients"),
-                   is_fisheye_model(model));
-    rotations[i] = rotation_of(reader.at({"rectificationmatrix", "r"}, "rectification_matrix"));
+                   is_fisheye_model(reader.at({"distortionmodel"}, "distortion_model")));
+    rotations.push_back(rotation_of(reader.at({"rectificationmatrix", "r"}, "rectification_matrix")));
     const Field& projection = reader.at({"projectionmatrix", "p"}, "projection_matrix");
-    projections[i] = matrix_of<3, 4>(projection);
-    if (i == 0 && projections[0](0, 3) != 0)
-      refuse(projection, fmt::format("{} at row 1, column 4", projections[0](0, 3)),
+    projections.push_back(matrix_of<3, 4>(projection));
+    if (projections.front()(0, 3) != 0)
+      refuse(projection, fmt::format("{} at row 1, column 4", projections.front()(0, 3)),
              "must be 0 for the left camera, which is the first file");
   }
-  set_place(rotations[0], rotations[1], projections[1], result.rig);
-  result.rig.translation *= options.unit_mm.value_or(kMillimetres);
-  return result;
+  set_place(rotations[0], rotations[1], projections[1], rig);
 }
 
-ImportedRig import_kalibr(const Reader& reader, const ImportOptions& options) {
-  constexpr double kMillimetres = 1000;
-  ImportedRig result{"Kalibr camchain", {}, {}};
-  set_size(reader, options, result.rig);
-  for (const std::string name : {"cam0", "cam1"}) {
-    CameraModel& camera = name == "cam0" ? result.rig.left : result.rig.right;
-    const auto field = [&](const char* key) -> const Field& {
-      return reader.at({name + '.' + plain(key)}, name + '.' + key);
+void import_kalibr(const Readers& readers, const ImportOptions& /*options*/, Rig& rig) {
+  for (const auto& [name, camera] : {std::pair("cam0", &rig.left), std::pair("cam1", &rig.right)}) {
+    const auto field = [&readers, its = name](const std::string& key) -> const Field& {
+      return readers.front().at({its + ('.' + plain(key))}, its + ('.' + key));
     };
     if (const Field& model = field("camera_model"); model.text != "pinhole")
       refuse(model, model.text, "must be pinhole");
     const Field& resolution = field("resolution");
-    if (resolution.numbers != std::vector<double>{double(result.rig.width), double(result.rig.height)})
+    if (resolution.numbers != std::vector<double>{double(rig.width), double(rig.height)})
       refuse(resolution, fmt::format("{}", fmt::join(resolution.numbers, "x")), "must be that of cam0");
     const auto intrinsics = matrix_of<4, 1>(field("intrinsics"));
-    camera.matrix << intrinsics[0], 0, intrinsics[2], 0, intrinsics[1], intrinsics[3], 0, 0, 1;
-    set_distortion(camera, field("distortion_coeffs"), is_fisheye_model(field("distortion_model")));
+    camera->matrix << intrinsics[0], 0, intrinsics[2], 0, intrinsics[1], intrinsics[3], 0, 0, 1;
+    set_distortion(*camera, field("distortion_coeffs"), is_fisheye_model(field("distortion_model")));
   }
-  const Field& place = reader.at({"cam1.tcncnm1"}, "cam1.T_cn_cnm1");
+  const Field& place = readers.front().at({"cam1.tcncnm1"}, "cam1.T_cn_cnm1");
   const Eigen::Matrix4d pose = matrix_of<4, 4>(place);
-  Field rotation = place;
-  rotation.numbers.clear();
-  for (int i = 0; i < 9; ++i) rotation.numbers.push_back(pose(i / 3, i % 3));
-  result.rig.rotation = rotation_of(rotation);
-  result.rig.translation = pose.block<3, 1>(0, 3) * options.unit_mm.value_or(kMillimetres);
-  return result;
+  rig.rotation = rotation_of(place, pose.topLeftCorner<3, 3>());
+  rig.translation = pose.topRightCorner<3, 1>();
 }
 
-// A rig whose pictures are rectified already: its cameras are those of the rectified pictures.
-void set_rectified(const Matrix3d& left, const Matrix3d& right, double baseline_mm, ImportedRig& result) {
-  result.rig.left.matrix = left;
-  result.rig.right.matrix = right;
-  result.rig.translation = {-baseline_mm, 0, 0};
-  Rectification& made = result.rectification.emplace();
-  made.p1.leftCols<3>() = left;
-  made.p2.leftCols<3>() = right;
-  made.p2(0, 3) = -baseline_mm * right(0, 0);
-  made.q = disparity_to_depth(made.p1, made.p2);
+bool has_same_rows(const Matrix3d& left, const Matrix3d& right) {
+  return left(0, 0) == right(0, 0) && left(1, 1) == right(1, 1) && left(1, 2) == right(1, 2);
 }
 
-// Whether the cameras are those of pictures that are rectified already.
-bool is_rectified(const Rig& rig) {
-  const auto is_straight = [](const CameraModel& camera) {
-    return std::all_of(camera.distortion.begin(), camera.distortion.end(),
-                       [](double each) { return each == 0; });
-  };
-  const Matrix3d& left = rig.left.matrix;
-  const Matrix3d& right = rig.right.matrix;
-  return is_straight(rig.left) && is_straight(rig.right) && !rig.left.is_fisheye &&
-         rig.rotation.isIdentity(0) && rig.translation.y() == 0 && rig.translation.z() == 0 &&
-         left(0, 0) == right(0, 0) && left(1, 1) == right(1, 1) && left(1, 2) == right(1, 2);
-}
-
-void check_same_rows(const Field& field, const Matrix3d& left, const Matrix3d& right) {
-  if (left(0, 0) != right(0, 0) || left(1, 1) != right(1, 1) || left(1, 2) != right(1, 2))
+// Sets the rig of pictures that are rectified already. `right`: the field of the right camera.
+void set_rectified(const Field& field, const Matrix3d& left, const Matrix3d& right, double baseline,
+                   Rig& rig) {
+  if (!has_same_rows(left, right))
     refuse(field, "another focal length or centre row than the other camera",
            "must be equal in pictures that are rectified");
+  rig.left.matrix = left;
+  rig.right.matrix = right;
+  rig.translation = {-baseline, 0, 0};
 }
 
-ImportedRig import_middlebury(const Reader& reader, const ImportOptions& options) {
-  ImportedRig result{"Middlebury calib.txt", {}, {}};
-  set_size(reader, options, result.rig);
+void import_middlebury(const Readers& readers, const ImportOptions& /*options*/, Rig& rig) {
+  const Reader& reader = readers.front();
   const Field& right_field = reader.at({"cam1"}, "cam1");
   const Matrix3d left = camera_matrix_of(reader.at({"cam0"}, "cam0"));
   const Matrix3d right = camera_matrix_of(right_field);
-  check_same_rows(right_field, left, right);
-  const double baseline = matrix_of<1, 1>(reader.at({"baseline"}, "baseline"))(0);
-  if (const Field* const doffs = reader.find({"doffs"})) {
-    constexpr double kCloseEnough = 1e-2;
-    if (std::abs(matrix_of<1, 1>(*doffs)(0) - (right(0, 2) - left(0, 2))) > kCloseEnough)
-      refuse(
-          *doffs, doffs->text,
-          fmt::format("must be {}, the distance of the centres of cam0 and cam1", right(0, 2) - left(0, 2)));
-  }
-  set_rectified(left, right, baseline * options.unit_mm.value_or(1), result);
-  return result;
+  set_rectified(right_field, left, right, matrix_of<1, 1>(reader.at({"baseline"}, "baseline"))(0), rig);
+  constexpr double kCloseEnough = 1e-2;
+  const double distance = right(0, 2) - left(0, 2);
+  const Field* const doffs = reader.find({"doffs"});
+  if (doffs != nullptr && std::abs(matrix_of<1, 1>(*doffs)(0) - distance) > kCloseEnough)
+    refuse(*doffs, doffs->text,
+           fmt::format("must be {}, the distance of the centres of cam0 and cam1", distance));
 }
 
-ImportedRig import_kitti(const Reader& reader, const ImportOptions& options) {
-  constexpr double kMillimetres = 1000;
-  ImportedRig result{"KITTI calib.txt", {}, {}};
-  set_size(reader, options, result.rig);
+void import_kitti(const Readers& readers, const ImportOptions& options, Rig& rig) {
+  const Reader& reader = readers.front();
   if (!options.cameras)
     reader.refuse("several cameras: two must be given by --cameras, such as P0,P1 (grey) or P2,P3 (colour)");
-  const auto projection = [&](const std::string& name) -> const Field& {
-    return reader.at({plain(name)}, name);
-  };
-  const Field& right_field = projection(options.cameras->second);
-  const Projection left = matrix_of<3, 4>(projection(options.cameras->first));
+  const auto& [first, second] = *options.cameras;
+  const Field& right_field = reader.at({plain(second)}, second);
+  const Projection left = matrix_of<3, 4>(reader.at({plain(first)}, first));
   const Projection right = matrix_of<3, 4>(right_field);
-  check_same_rows(right_field, left.leftCols<3>(), right.leftCols<3>());
-  const double baseline = (left(0, 3) - right(0, 3)) / left(0, 0);
-  set_rectified(left.leftCols<3>(), right.leftCols<3>(), baseline * options.unit_mm.value_or(kMillimetres),
-                result);
-  return result;
+  set_rectified(right_field, left.leftCols<3>(), right.leftCols<3>(), (left(0, 3) - right(0, 3)) / left(0, 0),
+                rig);
+}
+
+// The rectification of a rig whose pictures are rectified already; nullopt if they are not.
+std::optional<Rectification> made_rectification(const Rig& rig) {
+  const std::array<double, 12> none{};
+  if (rig.left.distortion != none || rig.right.distortion != none || rig.left.is_fisheye ||
+      !rig.rotation.isIdentity(0) || rig.translation.y() != 0 || rig.translation.z() != 0 ||
+      !has_same_rows(rig.left.matrix, rig.right.matrix))
+    return std::nullopt;
+  Rectification made;
+  made.p1.leftCols<3>() = rig.left.matrix;
+  made.p2.leftCols<3>() = rig.right.matrix;
+  made.p2(0, 3) = rig.translation.x() * rig.right.matrix(0, 0);
+  made.q = disparity_to_depth(made.p1, made.p2);
+  return made;
 }
 
 // What a rig must be to serve this board: the cameras side by side, the left one first. `reader` refuses.
-void check(const ImportedRig& found, const ImportOptions& options, const Reader& reader) {
+void check(const Rig& rig, const ImportOptions& options, const Reader& reader) {
   constexpr double kLeastMm = 5;
   constexpr double kMostMm = 10'000;
-  const Rig& rig = found.rig;
   const Vector3d& t = rig.translation;
   const std::string place = fmt::format("T = {:.1f}, {:.1f}, {:.1f} mm: ", t.x(), t.y(), t.z());
-  if (rig.width < 1 || rig.width > kMostPixels || rig.height < 1 || rig.height > kMostPixels)
-    reader.refuse(fmt::format("pictures of {}x{} pixels: must be 1..2048 each", rig.width, rig.height));
   if (std::abs(t.y()) > std::abs(t.x()))
     reader.refuse(place + "one camera is above the other: they must be side by side");
   if (t.x() > 0) reader.refuse(place + "the second camera is left of the first: exchange them");
@@ -461,62 +421,74 @@ void check(const ImportedRig& found, const ImportOptions& options, const Reader&
   }
 }
 
-bool has(const Fields& fields, const char* name) { return fields.count(name) != 0; }
+struct Format {
+  const char* name;
+  double unit_mm;                               // of T
+  std::vector<std::vector<std::string>> marks;  // a file of this format has all fields of one of them
+  void (*import)(const Readers& readers, const ImportOptions& options, Rig& rig);
+};
 
-std::optional<std::string> format_of(const Fields& fields) {
-  if (has(fields, "cam0.intrinsics")) return "Kalibr camchain";
-  if (has(fields, "cam0") && has(fields, "baseline")) return "Middlebury calib.txt";
-  if (has(fields, "p0") || has(fields, "prect00") || has(fields, "prect02")) return "KITTI calib.txt";
-  if ((has(fields, "projectionmatrix") && has(fields, "cameramatrix")) ||
-      (has(fields, "p") && has(fields, "k")))
-    return "ROS camera_info";
-  for (const std::vector<std::string>& bases : {kMatrices, kCoefficients}) {
-    for (const std::string& name : names_of(bases, kLeft)) {
-      if (has(fields, name.c_str())) return "OpenCV";
+// The format of a file; null if it is not known.
+const Format* format_of(const Fields& fields) {
+  static const std::vector<Format> formats = [] {
+    std::vector<std::vector<std::string>> of_opencv = {{"r", "t"}};
+    for (const std::vector<std::string>& bases : {kMatrices, kCoefficients}) {
+      for (const std::string& name : names_of(bases, kLeft)) of_opencv.push_back({name});
+    }
+    return std::vector<Format>{
+        {"Kalibr camchain", 1000, {{"cam0.intrinsics"}}, import_kalibr},
+        {"Middlebury calib.txt", 1, {{"cam0", "baseline"}}, import_middlebury},
+        {"KITTI calib.txt", 1000, {{"p0"}, {"prect00"}, {"prect02"}}, import_kitti},
+        {"ROS camera_info", 1000, {{"projectionmatrix", "cameramatrix"}, {"p", "k"}}, import_ros},
+        {"OpenCV", 1, of_opencv, import_opencv}};
+  }();
+  const auto has = [&fields](const std::string& name) { return fields.count(name) != 0; };
+  for (const Format& format : formats) {
+    for (const std::vector<std::string>& mark : format.marks) {
+      if (std::all_of(mark.begin(), mark.end(), has)) return &format;
     }
   }
-  if (has(fields, "r") && has(fields, "t")) return "OpenCV";
-  return std::nullopt;
+  return nullptr;
 }
 
 }  // namespace
 
 std::optional<std::string> foreign_format(const ForeignFile& file) try {
-  return format_of(fields_of(file));
+  const Format* const format = format_of(fields_of(file));
+  return format != nullptr ? std::optional<std::string>(format->name) : std::nullopt;
 } catch (const std::exception&) {
   return std::nullopt;
 }
 
 ImportedRig import_rig(const std::vector<ForeignFile>& files, const ImportOptions& options) {
   Fields all;
-  std::vector<Reader> readers;
+  Readers readers;
   std::string paths;
-  std::string format;
+  const Format* format = nullptr;
   for (const ForeignFile& file : files) {
     const Fields fields = fields_of(file);
-    const auto its = format_of(fields);
-    if (!its)
+    const Format* const its = format_of(fields);
+    if (its == nullptr)
       throw std::runtime_error(fmt::format(
           "'{}': no calibration of a kind that is known: OpenCV, ROS camera_info, Kalibr, Middlebury, KITTI",
           file.path));
-    if (!format.empty() && format != *its)
+    if (format != nullptr && format != its)
       throw std::runtime_error(
-          fmt::format("'{}': {}: must be {}, as the file before it", file.path, *its, format));
-    format = *its;
+          fmt::format("'{}': {}: must be {}, as the file before it", file.path, its->name, format->name));
+    format = its;
     paths += (paths.empty() ? "" : "', '") + file.path;
     readers.emplace_back(fields, file.path);
-    if (format == "ROS camera_info") continue;
+    if (format->import == import_ros) continue;
     for (const auto& [name, field] : fields) add(all, field);
   }
   const Reader reader(std::move(all), paths);
-  ImportedRig found = format == "ROS camera_info"        ? import_ros(readers, options)
-                      : format == "Kalibr camchain"      ? import_kalibr(reader, options)
-                      : format == "Middlebury calib.txt" ? import_middlebury(reader, options)
-                      : format == "KITTI calib.txt"      ? import_kitti(reader, options)
-                                                         : import_opencv(reader, options);
-  check(found, options, reader);
-  if (!found.rectification && is_rectified(found.rig))
-    set_rectified(found.rig.left.matrix, found.rig.right.matrix, found.rig.translation.norm(), found);
+  if (format->import != import_ros) readers = {reader};
+  ImportedRig found{format->name, {}, {}};
+  set_size(readers.front(), options, found.rig);
+  format->import(readers, options, found.rig);
+  found.rig.translation *= options.unit_mm.value_or(format->unit_mm);
+  check(found.rig, options, reader);
+  found.rectification = made_rectification(found.rig);
   return found;
 }
 
@@ -539,11 +511,10 @@ std::vector<ForeignFile> export_rig(const Rig& rig, const Rectification& rectifi
     return {{".yaml", file.releaseAndGetString()}};
   }
   constexpr double kMetres = 1e-3;
-  const auto matrix_text = [](const char* name, const auto& matrix) {
-    std::vector<double> numbers;
-    for (int i = 0; i < matrix.size(); ++i) numbers.push_back(matrix(i / matrix.cols(), i % matrix.cols()));
+  const auto matrix_text = [](const char* name, const Eigen::MatrixXd& matrix) {
+    const Eigen::MatrixXd by_rows = matrix.transpose();
     return fmt::format("{}:\n  rows: {}\n  cols: {}\n  data: [{}]\n", name, matrix.rows(), matrix.cols(),
-                       fmt::join(numbers, ", "));
+                       fmt::join(by_rows.data(), by_rows.data() + by_rows.size(), ", "));
   };
   const auto camera_text = [&](const char* name, const CameraModel& camera, const Matrix3d& rotation,
                                Projection projection) {
@@ -552,12 +523,12 @@ std::vector<ForeignFile> export_rig(const Rig& rig, const Rectification& rectifi
       throw std::runtime_error(fmt::format("the {} lens has a prism: camera_info has no model for it", name));
     projection.col(3) *= kMetres;
     const Eigen::Map<const Eigen::RowVectorXd> coefficients(camera.distortion.data(), long(count));
-    return fmt::format("{}\nimage_width: {}\nimage_height: {}\ncamera_name: {}\n", kExportMark, rig.width,
-                       rig.height, name) +
+    const char* const model = camera.is_fisheye ? "equidistant"
+                              : count == 5      ? "plumb_bob"
+                                                : "rational_polynomial";
+    return fmt::format("{}\nimage_width: {}\nimage_height: {}\ncamera_name: {}\ndistortion_model: {}\n",
+                       kExportMark, rig.width, rig.height, name, model) +
            matrix_text("camera_matrix", camera.matrix) +
-           fmt::format("distortion_model: {}\n", camera.is_fisheye ? "equidistant"
-                                                 : count == 5      ? "plumb_bob"
-                                                                   : "rational_polynomial") +
            matrix_text("distortion_coefficients", coefficients) +
            matrix_text("rectification_matrix", rotation) + matrix_text("projection_matrix", projection);
   };

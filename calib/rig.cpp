@@ -150,15 +150,37 @@ std::optional<Eigen::Vector2d> SourcePixels::at(const Eigen::Vector2d& rectified
   return camera_.pixel(direction);
 }
 
+std::string GridShape::text() const {
+  return fmt::format("{}x{} {}", columns, rows,
+                     pattern == Pattern::kChessboard ? "inner corners" : "circles");
+}
+
+Eigen::Vector2d GridShape::extent() const {
+  return {pattern == Pattern::kAsymmetricCircles ? 2 * columns - 1 : columns - 1, rows - 1};
+}
+
+std::optional<Pattern> pattern_named(const std::string& name) {
+  const auto* const found = std::find(kPatternNames.begin(), kPatternNames.end(), name);
+  if (found == kPatternNames.end()) return std::nullopt;
+  return static_cast<Pattern>(found - kPatternNames.begin());
+}
+
 std::vector<std::string> problems(const GridShape& shape) {
+  const char* corners_text = shape.pattern == Pattern::kChessboard ? "inner corners" : "circles";
   std::vector<std::string> found;
-  const auto check_corners = [&found](const char* field, int corners) {
+  const auto check_corners = [&](const char* field, int corners) {
     if (corners < 3 || corners > 100) {
-      found.push_back(fmt::format("{} = {}: must be 3..100 inner corners", field, corners));
+      found.push_back(fmt::format("{} = {}: must be 3..100 {}", field, corners, corners_text));
     }
   };
   check_corners("columns", shape.columns);
   check_corners("rows", shape.rows);
+  if (shape.pattern == Pattern::kAsymmetricCircles && shape.rows % 2 == 0) {
+    found.push_back(fmt::format(
+        "rows = {}: must be odd with asymmetric circles: an even number looks the same upside down, and "
+        "OpenCV's search then mistakes the rows",
+        shape.rows));
+  }
   if (!(shape.square_mm >= 1 && shape.square_mm <= 1000)) {
     found.push_back(fmt::format("square_mm = {}: must be 1..1000", shape.square_mm));
   }
@@ -169,7 +191,8 @@ std::vector<Eigen::Vector3d> corner_points(const GridShape& shape) {
   std::vector<Eigen::Vector3d> points;
   for (int row = 0; row < shape.rows; ++row) {
     for (int column = 0; column < shape.columns; ++column) {
-      points.emplace_back(column * shape.square_mm, row * shape.square_mm, 0);
+      const int across = shape.pattern == Pattern::kAsymmetricCircles ? 2 * column + row % 2 : column;
+      points.emplace_back(across * shape.square_mm, row * shape.square_mm, 0);
     }
   }
   return points;

@@ -99,19 +99,36 @@ class SourcePixels {
   double widest_;
 };
 
-// A chessboard: `columns` x `rows` inner corners, where four squares meet.
+// The pattern of a calibration grid. Circles are dark on a bright ground. Asymmetric circles are those of
+// OpenCV: every other row is shifted by half the distance between two circles of a row.
+enum class Pattern { kChessboard, kCircles, kAsymmetricCircles };
+
+// The names in options and files, in the order of Pattern.
+inline constexpr std::array<const char*, 3> kPatternNames = {"chessboard", "circles", "asymmetric_circles"};
+std::optional<Pattern> pattern_named(const std::string& name);
+
+// A calibration grid of `columns` x `rows` corners: the inner corners of a chessboard, where four squares
+// meet, or the centres of circles, which are called corners too.
 struct GridShape {
-  int columns = 0;       // 3..100
-  int rows = 0;          // 3..100
-  double square_mm = 0;  // a side of a square, 1..1000
+  int columns = 0;  // 3..100
+  int rows = 0;     // 3..100; odd if the circles are asymmetric
+  // 1..1000: a side of a square, or the distance between two rows of circles. Asymmetric circles of one row
+  // are twice as far apart.
+  double square_mm = 0;
+  Pattern pattern = Pattern::kChessboard;
 
   int corners() const { return columns * rows; }
+  // "9x6 inner corners", or "4x11 circles".
+  std::string text() const;
+  // The width and height that the corners span, in units of square_mm.
+  Eigen::Vector2d extent() const;
 };
 
 // Every broken rule, as `field = value: rule`.
 std::vector<std::string> problems(const GridShape& shape);
 
-// The inner corners on the chessboard, row by row, z = 0, in mm; the first is the origin.
+// The corners on the grid, row by row, z = 0, in mm; the first is the origin. The corner (column, row) is at
+// (column, row) * square_mm; that of asymmetric circles at (2 * column + row % 2, row) * square_mm.
 std::vector<Eigen::Vector3d> corner_points(const GridShape& shape);
 
 // The corners in one picture, in the order of corner_points(), in pixels.

@@ -148,6 +148,12 @@ Places places_of(const SingleFit& left, const SingleFit& right) {
   return result;
 }
 
+// Whether most pairs can be of one rig at all.
+bool nearly_agree(const Places& places) {
+  constexpr double kMostShare = 0.1;  // of the distance of the grid
+  return median(places.errors) < kMostShare * median(places.distances);
+}
+
 // Returns which corners to use: all corners of the pairs in which the right camera is near its median
 // position relative to the left one, and none of the other pairs. A pair whose grid moved between its two
 // pictures would spoil the fit to all pairs.
@@ -160,19 +166,12 @@ Used pairs_that_agree(const Places& places, std::size_t corners) {
   return used;
 }
 
-double root_mean_square(const Misfit& misfit) {
-  double squares = 0;
-  for (const std::vector<double>* side : {&misfit.left, &misfit.right})
-    for (const double distance : *side) squares += distance * distance;
-  return std::sqrt(squares / (2.0 * static_cast<double>(misfit.left.size())));
-}
-
 // [pair]: how much worse the rig fits than the cameras alone do.
 std::vector<double> ratios_of_pairs(const RigFit& fit, const SingleFit& left, const SingleFit& right) {
   std::vector<double> ratios;
   for (std::size_t pair = 0; pair < fit.misfits.size(); ++pair) {
     const auto view = static_cast<int>(pair);
-    ratios.push_back(root_mean_square(fit.misfits[pair]) * std::sqrt(2.0) /
+    ratios.push_back(fit.misfits[pair].rms_px() * std::sqrt(2.0) /
                      std::hypot(left.view_rms_px.at<double>(view), right.view_rms_px.at<double>(view)));
   }
   return ratios;
@@ -281,6 +280,11 @@ RigFit fit_kept(const GridShape& shape, const std::vector<GridPair>& pairs, cons
   add_figures(fit);
   fit.evidence.alone_rms_px = std::max(alone.left.rms_px, alone.right.rms_px);
   fit.evidence.rig_rms_px = fit.stereo_rms_px;
+  for (std::size_t view = 0; view < alone.left.rotations.size(); ++view) {
+    const double cosine = to_pose(alone.left.rotations[view], alone.left.translations[view]).linear()(2, 2);
+    fit.evidence.tilt_deg =
+        std::max(fit.evidence.tilt_deg, kDegrees * std::acos(std::min(1.0, std::abs(cosine))));
+  }
   return fit;
 }
 
@@ -354,6 +358,13 @@ Eigen::Isometry3d fitted_pose(const Rig& rig, const std::vector<Eigen::Vector3d>
 }
 
 }  // namespace
+
+double Misfit::rms_px() const {
+  double squares = 0;
+  for (const std::vector<double>* side : {&left, &right})
+    for (const double distance : *side) squares += distance * distance;
+  return std::sqrt(squares / static_cast<double>(left.size() + right.size()));
+}
 
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
               Lens lens, Lenses lenses) {
@@ -429,11 +440,9 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
 
 std::optional<Evidence> evidence_of(const GridShape& shape, const std::vector<GridPair>& pairs,
                                     const Rig& guess) {
-  constexpr double kMostShare = 0.1;  // of the distance of the grid
   const Used all(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
   const SingleFits alone = fit_cameras(observations(shape, pairs, all), guess, Lens::kFull);
-  const Places places = places_of(alone.left, alone.right);
-  if (!(median(places.errors) < kMostShare * median(places.distances))) return std::nullopt;
+  if (!nearly_agree(places_of(alone.left, alone.right))) return std::nullopt;
   return fit_kept(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull).evidence;
 }
 

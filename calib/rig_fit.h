@@ -18,6 +18,7 @@ struct Misfit {
   std::vector<double> right;
 
   double of_corner(std::size_t corner) const { return std::max(left[corner], right[corner]); }
+  double rms_px() const;
 };
 
 // A corner that was left out because it does not fit.
@@ -35,6 +36,7 @@ enum class Lens : std::uint8_t { kFull, kWithoutK3 };
 struct Evidence {
   double alone_rms_px = 0;       // reprojection of the worse camera, which is fitted by itself
   double rig_rms_px = 0;         // of both cameras with the lenses of these fits
+  double tilt_deg = 0;           // the largest angle between a grid and the picture of the left camera alone
   bool lenses_are_kept = false;  // whether the rig has these lenses, because a joint fit would bend them
   bool has_few_pairs = false;    // whether fewer than kFewestPairs fit, so that no corner was left out
 
@@ -61,12 +63,13 @@ inline constexpr std::size_t kFewestPairs = 3;
 
 // Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate). The first
 // fit uses the pairs that agree about the position of the right camera relative to the left. A corner is left
-// out on both sides if its misfit is above max(8 * median, 0.1 pixels). A pair that keeps less than half of
-// its corners is left out. The fit is repeated until it uses the same corners again. Then each camera is
-// fitted by itself to these corners. If the rig fits worse than its cameras (from 1.5 times on), and the
-// joint fit moved a focal length or a centre by more than 3 sigma, the result has the lenses of the single
-// fits. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if OpenCV finds
-// no rig. The caller looks at RigFit::evidence.
+// out on both sides if its misfit is above max(8 * median, 0.1 pixels). A pair is left out if it keeps less
+// than half of its corners, or if the rig fits to it 1.8 times worse, compared with each camera alone, than to
+// the median pair. The fit is repeated until it uses the same corners again. Then each camera is fitted by
+// itself to these corners. The result has the lenses of these fits, if the rig fits 1.5 times worse than its
+// cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma; also, if the pairs
+// do not nearly agree where the cameras stand. The caller looks at RigFit::evidence. Throws
+// std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 

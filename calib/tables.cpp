@@ -86,9 +86,13 @@ std::size_t entries_without_source(const kernels::RectificationTable& table) {
                                                 [](std::uint32_t e) { return !kernels::entry_is_valid(e); }));
 }
 
+bool is_mostly_empty(const kernels::RectificationTable& table) {
+  return entries_without_source(table) * 2 > table.entries.size();
+}
+
 void check_sources(const TablePair& tables, int disparity_offset) {
   for (const auto& [side, table] : {std::pair("left", &tables.left), std::pair("right", &tables.right)}) {
-    if (2 * entries_without_source(*table) <= table->entries.size()) continue;
+    if (!is_mostly_empty(*table)) continue;
     throw std::invalid_argument(fmt::format(
         "refused: the {} table would be empty in {} of {} entries: with disparities from {} on, the "
         "cameras of this calibration see too little of the same",

@@ -41,8 +41,10 @@ kernels::RectificationTable parse_lut(std::string_view bytes, int width, int hei
 // The number of entries that are not valid.
 std::size_t entries_without_source(const kernels::RectificationTable& table);
 
-// Throws std::invalid_argument if more than half of the entries of a table are not valid: such a calibration
-// cannot rectify.
+// Whether more than half of the entries are not valid: no rig whose cameras see the same needs that.
+bool is_mostly_empty(const kernels::RectificationTable& table);
+
+// Throws std::invalid_argument if a table is mostly empty: such a calibration cannot rectify.
 void check_sources(const TablePair& tables, int disparity_offset);
 
 // How many source lines a front end would have to buffer if it kept lines instead of reading single pixels.

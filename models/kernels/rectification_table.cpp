@@ -22,13 +22,15 @@ std::string entry_name(const RectificationTable& table, std::size_t index) {
 
 }  // namespace
 
-RectificationTable identity_table(int width, int height) {
+RectificationTable identity_table(int width, int height, int offset) {
   RectificationTable table{width, height, {}};
   if (width > 0 && height > 0)
     table.entries.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const int first = std::max(0, -offset);
+  const int end = std::min(width, width - offset);
   std::uint32_t* entries = table.entries.data();
   for (int row = 0; row < height; ++row, entries += width) {
-    for (int column = 0; column < width; ++column) entries[column] = make_entry(column, row);
+    for (int column = first; column < end; ++column) entries[column] = make_entry(column + offset, row);
   }
   return table;
 }

@@ -30,8 +30,9 @@ struct RectificationTable {
   std::vector<std::uint32_t> entries;  // width * height
 };
 
-// Returns a table in which every pixel is its own source, as on a board without calibration.
-RectificationTable identity_table(int width, int height);
+// Returns a table whose entry (x, y) is pixel (x + offset, y), or not valid if that is outside. Without offset
+// every pixel is its own source, as on a board without calibration.
+RectificationTable identity_table(int width, int height, int offset = 0);
 
 // Whether all valid entries point inside an image of that size.
 bool entries_point_inside(const std::uint32_t* entries, std::size_t count, int width, int height);

@@ -14,10 +14,12 @@ struct Tables {
   std::optional<kernels::RectificationTable> right;  // nullopt: the side has no buffer for a table
 };
 
-// The tables of a board that is not calibrated: every entry is its own source (contract 1.1).
-inline Tables identity_tables(const BoardConfig& board) {
+// The tables of a board that is not calibrated: every entry is its own source (contract 1.1). An offset other
+// than 0 is subtracted from each disparity: entry (x, y) of the left table is then pixel (x + offset, y).
+inline Tables identity_tables(const BoardConfig& board, int disparity_offset = 0) {
   Tables tables;
-  if (board.allocation.left_lut) tables.left = kernels::identity_table(board.image.width, board.image.height);
+  if (board.allocation.left_lut)
+    tables.left = kernels::identity_table(board.image.width, board.image.height, disparity_offset);
   if (board.allocation.right_lut)
     tables.right = kernels::identity_table(board.image.width, board.image.height);
   return tables;

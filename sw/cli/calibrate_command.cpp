@@ -9,11 +9,13 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -149,17 +151,23 @@ struct CalibrateOptions : Options {
     }
     if (!square.is_given()) problems.add("--square-mm: missing: a side of the grid's squares in millimetres");
     if (print_grid.is_given()) {
-      for (const Option* option : {&grid, &left, &right, &synthetic, &disparities, &offset}) {
+      for (const Option* option : {&grid, &left, &right, &side_by_side, &synthetic, &disparities, &offset}) {
         if (option->is_given())
           problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
       }
+      if (grid_shape().pattern != calib::Pattern::kChessboard)
+        problems.add("--print-grid: draws a chessboard only");
       ends_in(".svg")(out, problems);
     } else {
       if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
-      if (synthetic.is_given() && (left.is_given() || right.is_given()))
-        problems.add("--synthetic: makes its own pictures: does not go with --left and --right");
+      const bool has_sides = left.is_given() || right.is_given();
+      if (synthetic.is_given() && (has_sides || side_by_side.is_given()))
+        problems.add(
+            "--synthetic: makes its own pictures: does not go with --left, --right and --side-by-side");
+      if (side_by_side.is_given() && has_sides)
+        problems.add("--side-by-side: has both pictures of a pair: does not go with --left and --right");
       for (const auto& [side, option] : {std::pair("left", &left), std::pair("right", &right)}) {
-        if (!synthetic.is_given() && !option->is_given())
+        if (!synthetic.is_given() && !side_by_side.is_given() && !option->is_given())
           problems.add(fmt::format("--{0}: missing: the {0} camera's pictures (or --synthetic SEED)", side));
       }
       ends_in(".yaml")(out, problems);
@@ -176,15 +184,16 @@ struct CalibrateOptions : Options {
   // With --check, which goes with no other option.
   void check_alone(process::Problems& problems) {
     for (const Option* option :
-         {&grid, &square, &left, &right, &synthetic, &print_grid, &disparities, &offset, &import, &size,
-          &unit, &lens, &cameras, &near, &far, &exported, &out}) {
+         {&grid, &pattern, &square, &left, &right, &side_by_side, &synthetic, &print_grid, &disparities,
+          &offset, &import, &size, &unit, &lens, &cameras, &near, &far, &exported, &out}) {
       if (option->is_given()) problems.add(fmt::format("{}: does not go with --check", option->name()));
     }
   }
 
   // With --import, in place of the others.
   void check_import(process::Problems& problems) {
-    for (const Option* option : {&grid, &square, &left, &right, &synthetic, &print_grid}) {
+    for (const Option* option :
+         {&grid, &pattern, &square, &left, &right, &side_by_side, &synthetic, &print_grid}) {
       if (option->is_given()) problems.add(fmt::format("{}: does not go with --import", option->name()));
     }
     ends_in(".yaml")(out, problems);
@@ -227,6 +236,7 @@ struct CalibrateOptions : Options {
     calib::GridShape shape;
     read_grid(print_grid.is_given() ? print_grid.text() : grid.text(), shape);
     shape.square_mm = square.number<double>().value_or(0);
+    shape.pattern = calib::pattern_named(pattern.text()).value_or(calib::Pattern::kChessboard);
     return shape;
   }
   // Columns; nullopt: auto.
@@ -241,6 +251,10 @@ struct CalibrateOptions : Options {
              {}, Takes::kList);
   Option right = Option(this, "--right", "'GLOB'", "The right camera's pictures, as many, in the same order",
                         {}, Takes::kList);
+  Option side_by_side = Option(this, "--side-by-side", "'GLOB'",
+                               "Instead of --left and --right: pictures that hold the left and the right "
+                               "picture of a pair side by side",
+                               {}, Takes::kList);
   Option synthetic =
       Option(this, "--synthetic", "SEED",
              "Instead of pictures: a synthetic rig with known parameters, another one for each "
@@ -248,10 +262,15 @@ struct CalibrateOptions : Options {
              {number<std::uint64_t>(kSeedRule)});
   Option grid = Option(
       this, "--grid", "CxR",
-      "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6)",
+      "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6), "
+      "or of circles",
       {is_grid()});
+  Option pattern = Option(this, "--pattern", "chessboard|circles|asymmetric_circles",
+                          "What the grid shows (default chessboard); circles are dark on a bright ground",
+                          {one_of({calib::kPatternNames.begin(), calib::kPatternNames.end()})});
   Option square =
-      Option(this, "--square-mm", "S", "A side of its squares, in millimetres", {number<double>("a number")});
+      Option(this, "--square-mm", "S", "A side of its squares, in millimetres; of circles: from row to row",
+             {number<double>("a number")});
   Option disparities = Option(this, "--disparities", "D",
                               "Disparities of the board for which the tables are made, 1..254 (default 80)",
                               {number<int>("an integer, " + kernels::kDisparitiesRule.text(), [](int count) {
@@ -354,7 +373,8 @@ class Calibrator {
  private:
   void load_pictures(process::Problems& problems) {
     if (!options_.synthetic.is_given()) {
-      request_.pictures = runs::load_grid_pictures(options_.left.texts(), options_.right.texts(), problems);
+      request_.pictures = runs::load_grid_pictures(options_.left.texts(), options_.right.texts(),
+                                                   options_.side_by_side.texts(), problems);
       return;
     }
     problems.attempt("--synthetic: ", [&] {
@@ -372,8 +392,9 @@ class Calibrator {
     std::vector<files::NamedFile> inputs;
     if (!rig_) {  // the pictures of a synthetic rig are outputs
       for (const calib::PicturePair& pair : request_.pictures) {
-        inputs.push_back({"--left", pair.left_name});
-        inputs.push_back({"--right", pair.right_name});
+        const bool is_split = options_.side_by_side.is_given();
+        inputs.push_back({is_split ? "--side-by-side" : "--left", pair.left_name});
+        if (!is_split) inputs.push_back({"--right", pair.right_name});
       }
     }
     fs::path folder = files_.calibration.parent_path();
@@ -392,13 +413,28 @@ class Calibrator {
   void calibrate() {
     constexpr std::chrono::milliseconds kPollInterval{50};
     const runs::CalibrationFunctions& functions = runs::calibration_functions();
+    const std::size_t pictures = 2 * request_.pictures.size();
+    std::mutex mutex;
+    std::size_t searched = 0;
+    std::string last;  // of the pictures searched
+    request_.progress = [&](std::size_t count, const std::string& found) {
+      const std::lock_guard lock(mutex);
+      std::tie(searched, last) = std::tie(count, found);
+    };
     auto work = std::async(std::launch::async, [&] {
       result_ = functions.calibrate(request_);
       drawings_ = functions.drawings(request_, result_);
     });
     runs::ProgressLine progress(fmt::format("{} pairs of pictures are compared", request_.pictures.size()));
+    const auto show = [&] {
+      const std::lock_guard lock(mutex);
+      if (searched == pictures) return progress.show_time();
+      progress.show(searched, pictures, [&](double seconds) {
+        return runs::progress_text(searched, pictures, "pictures searched", seconds) + "; " + last;
+      });
+    };
     while (work.wait_for(kPollInterval) != std::future_status::ready) {
-      progress.show_time();
+      show();
       if (!process::interrupted()) continue;
       output_.reset();
       std::_Exit(leave_unwritten());

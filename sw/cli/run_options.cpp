@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <regex>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "calib/calibration.h"
+#include "calib/tables.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
@@ -19,9 +21,9 @@
 #include "sw/files/text_forms.h"
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
+#include "sw/runs/pair_check.h"
 #include "sw/runs/run_json.h"
 #include "sw/runs/run_results.h"
-#include "sw/runs/sources/calibration_library.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -82,12 +84,13 @@ bool lies_in(const fs::path& inner, const fs::path& folder) {
   return !no_inner && !no_folder && *inside.begin() != "..";
 }
 
-void load_truth(const RunOptions& options, const platform::BoardConfig* board, runs::OpenedSource& source,
+// `frame`: the last one.
+void load_truth(const RunOptions& options, std::uint64_t frame, runs::OpenedSource& source,
                 runs::RunInput& input, process::Problems& problems) {
   if (!options.truth.file.is_given()) return;
   const runs::NamedFile file = {"--truth", options.truth.file.text()};
   source.files.push_back(file);
-  input.truth = runs::open_truth(file, options.truth.scale(), board, problems);
+  input.truth = runs::open_truth(file, options.truth.scale(), source, frame, problems);
   if (input.truth)
     problems.attempt("--truth ", [&] {
       input.described.truth = {fs::absolute(file.path).string(), files::sha256_file(file.path)};
@@ -97,6 +100,19 @@ void load_truth(const RunOptions& options, const platform::BoardConfig* board, r
         "--truth: cameras drop frames: which of {} pairs the last frame shows is not known before the run: "
         "must be a run with one pair, or with --source preloaded",
         source.pairs->length()));
+}
+
+void check_offset(const platform::BoardConfig& board, std::optional<int> offset,
+                  process::Problems& problems) {
+  if (!offset) return;
+  if (!board.allocation.left_lut)
+    problems.add(fmt::format(
+        "--disparity-offset = {}: allocation.left_lut = none: must be a board with a table of the left side, "
+        "which moves the picture, such as the preset fpl2003",
+        *offset));
+  if (std::abs(*offset) >= board.image.width)
+    problems.add(fmt::format("--disparity-offset = {}: must be less than the columns of the images, {}",
+                             *offset, board.image.width));
 }
 
 void open_traces(const RunOptions& options, runs::RunInput& input) {
@@ -112,32 +128,15 @@ void open_traces(const RunOptions& options, runs::RunInput& input) {
   input.trace = std::make_unique<trace::Trace>(files, input.board, options.trace.window());
 }
 
-// Prints how well the rows of the rectified pictures match. A poor match gives a warning: the calibration
-// may be of another rig, which its file alone does not reveal.
-void say_how_rows_agree(const runs::RunInput& input, const host::StereoPair& pair) {
-  constexpr double kDoubtful = 1.5;  // pixels
-  constexpr std::size_t kFew = 10;
-  constexpr std::size_t kMany = 50;
-  const calib::MatchedRows rows = runs::calibration_functions().matched_rows(
-      kernels::rectify(pair.left, *input.tables.left), kernels::rectify(pair.right, *input.tables.right),
-      input.board.matcher.disparities);
-  std::string text = fmt::format(
-      "--calibration: of {} conspicuous points of the first left picture {} are found in the right one",
-      rows.points, rows.error.corners);
-  bool is_doubtful = false;
-  if (rows.error.corners < kFew) {
-    is_doubtful = rows.points >= kMany;
-    text += is_doubtful ? ": is it of this rig, and are left and right not exchanged?"
-                        : ": too few to see whether it is of this rig";
-  } else {
-    is_doubtful = rows.error.mean_px > kDoubtful;
-    text += fmt::format("; their rows differ by {:.2f} pixels on average{}", rows.error.mean_px,
-                        is_doubtful ? ": is it of this rig?" : "");
-  }
-  process::say(is_doubtful ? "warning" : "note", text);
-}
-
 void say_what_is_not_seen(const runs::RunInput& input) {
+  for (const auto& [side, table] :
+       {std::pair("left", &input.tables.left), std::pair("right", &input.tables.right)}) {
+    if (calib::is_mostly_empty(**table))
+      process::say("warning",
+                   fmt::format("--calibration: {} of {} entries of the {} table are empty: hardly "
+                               "anything is seen: was its offset right, and its rig?",
+                               calib::entries_without_source(**table), (*table)->entries.size(), side));
+  }
   const int made_for = input.calibration->disparities;
   const int has = input.board.matcher.disparities;
   if (has < made_for)
@@ -155,16 +154,13 @@ bool has_arrays() {
   return process::client->given("right") != nullptr || has_left;
 }
 
-// Sets what the options say of the run. `pairs`: the length of the source of pictures.
-void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& input) {
-  const bool has_end =
-      options.pictures.sequence.is_given() || options.pictures.video.is_given() || has_arrays();
+// Sets what the options say of the run.
+void describe(const RunOptions& options, runs::RunInput& input) {
   input.camera = options.source.is_camera();
   input.fast = options.fidelity.text() != "cycle";
   input.timing_only = options.timing_only.is_given();
   input.recorded_frames = options.recorded_frames();
   input.json = options.json.is_given();
-  input.frames = options.frames.number<std::uint64_t>().value_or(has_end ? pairs : 1);
   runs::RecordedOptions& run = input.described;
   run.program_version = process::kVersion;
   run.source = input.camera ? "camera" : "preloaded";
@@ -173,6 +169,7 @@ void describe(const RunOptions& options, std::uint64_t pairs, runs::RunInput& in
   run.verify = options.verify.is_given();
   run.frames = input.frames;
   run.truth_scale = options.truth.scale().value_or(1);
+  run.disparity_offset = options.offset();
   run.save_frames = options.save_frames.is_given();
   run.record = options.record.is_given();
   run.no_record = options.no_record.is_given();
@@ -323,12 +320,13 @@ std::vector<std::string> PictureOptions::sources_given() const {
 
 runs::InputPictures PictureOptions::named() const {
   runs::InputPictures pictures;
-  if (left.is_given()) pictures.left = {left.text(), ""};
-  if (right.is_given()) pictures.right = {right.text(), ""};
+  if (left.is_given()) pictures.left = {{left.text(), ""}};
+  if (right.is_given()) pictures.right = {{right.text(), ""}};
   if (sequence.is_given()) pictures.sequence = {sequence.text(), {}};
   for (const std::string& file : video.texts()) pictures.video.push_back({file, ""});
   pictures.video_layout = video_layout.text();
   pictures.synthetic = synthetic.number<std::uint64_t>();
+  pictures.fit = fit.text();
   return pictures;
 }
 
@@ -342,6 +340,12 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
   trace.check_together(problems);
   if (truth.file.is_given() && pictures.synthetic.is_given())
     problems.add("--truth: does not go with --synthetic, whose scene is its own truth");
+  if (offset() && board.calibration.is_given())
+    problems.add("--disparity-offset: does not go with --calibration, whose tables have an offset already");
+  if (pictures.fit.is_given() && board.calibration.is_given())
+    problems.add("--fit: does not go with --calibration, whose tables are for pictures of the board's size");
+  if (pictures.fit.is_given() && pictures.synthetic.is_given())
+    problems.add("--fit: does not go with --synthetic, whose scene has the board's size");
   for (const auto& [name, given] :
        {std::pair("--truth", truth.file.is_given()), std::pair("--save-frames", save_frames.is_given())}) {
     if (timing_only.is_given() && given)
@@ -368,12 +372,18 @@ runs::RunInput RunOptions::load() const {
   const platform::BoardConfig* const its = loaded.board ? &*loaded.board : nullptr;
   runs::InputPictures& named = input.described;
   named = pictures.named();
-  problems.attempt("", [&] { opened = runs::open_source(named, its, problems); });
-  if (has_arrays() && its != nullptr)
-    problems.attempt("", [&] { opened.pairs = runs::pairs_of_client(*its); });
+  problems.attempt("",
+                   [&] { opened = runs::open_source(named, its, problems, board.calibration.is_given()); });
+  if (has_arrays() && its != nullptr) problems.attempt("", [&] { runs::open_arrays(opened); });
   if (calibration)
     opened.files.insert(opened.files.end(), calibration->files.begin(), calibration->files.end());
-  load_truth(*this, its, opened, input, problems);
+  const std::uint64_t pairs = opened.pairs ? opened.pairs->length() : 1;
+  input.frames = frames.number<std::uint64_t>().value_or(pairs == runs::PairSource::kEndless ? 1 : pairs);
+  if (its != nullptr) {
+    check_offset(*its, offset(), problems);
+    if (problems.empty()) opened.truth_offset = runs::truth_offset(*its, calibration, offset().value_or(0));
+  }
+  load_truth(*this, input.frames - 1, opened, input, problems);
   process::catch_interrupts();
   input.inputs = opened.files;
   input.inputs.push_back({"BOARD", board.argument.text()});
@@ -384,14 +394,14 @@ runs::RunInput RunOptions::load() const {
   problems.check();
   input.board = *loaded.board;
   problems.attempt("", [&] {
-    input.tables = runs::tables_of(input.board, calibration);
+    input.tables = runs::tables_of(input.board, calibration, offset().value_or(0));
     if (calibration) {
       input.calibration = calibration->calibration;
       input.described.calibration = calibration->described;
     }
     if (has_arrays() && input.folder && !input.timing_only)
       named.sequence = runs::keep_pictures(*opened.pairs, *input.folder);
-    describe(*this, opened.pairs ? opened.pairs->length() : 1, input);
+    describe(*this, input);
   });
   trace.check_window(input.board, input.frames, problems);
   problems.check();
@@ -400,7 +410,7 @@ runs::RunInput RunOptions::load() const {
   for (const std::string& note : opened.notes) process::say("note", note);
   if (input.calibration) say_what_is_not_seen(input);
   if (input.calibration && !input.timing_only)
-    process::attempt_or_refuse("", [&] { say_how_rows_agree(input, opened.pairs->pair(0)); });
+    process::attempt_or_refuse("", [&] { runs::say_how_rows_agree(input, opened.pairs->pair(0)); });
   input.pairs = input.timing_only ? runs::blank_pairs(input.board) : std::move(opened.pairs);
   return input;
 }

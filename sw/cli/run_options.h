@@ -126,8 +126,9 @@ struct PictureOptions {
 
   Options* of;
   Option left = Option(of, "--left", "F",
-                       "The left picture of one pair for every frame, 8-bit, as large as the board's images");
-  Option right = Option(of, "--right", "F", "The right picture");
+                       "The left picture, or a quoted pattern of several ('left/*.png'), shown in natural "
+                       "order (2 before 10); 8-bit, as large as the board's images");
+  Option right = Option(of, "--right", "F", "The right picture, or as many, in the same order");
   Option sequence = Option(of, "--sequence", "DIR",
                            "A folder of pairs left_*.png and right_*.png, shown in the order of their names");
   Option video = Option(of, "--video", "F [F2]", "A video of pairs, or two videos, the left one first", {},
@@ -141,6 +142,11 @@ struct PictureOptions {
       Option(of, "--synthetic", "SEED",
              "A synthetic moving scene with known disparities; another one for each SEED, 0 or more",
              {number<std::uint64_t>(kSeedRule)});
+  Option fit =
+      Option(of, "--fit", "crop|pad",
+             "Take pictures of another size than the board's images: crop takes the middle of larger "
+             "ones, pad repeats the last column and row of smaller ones; truth alike",
+             {one_of(media::kFitNames)});
 };
 
 // The options of `run`. Those that say what is simulated are options of `conflicts` too.
@@ -156,6 +162,9 @@ struct RunOptions {
   // process, which has not changed anything yet. Afterwards interrupts are caught (catch_interrupts()).
   runs::RunInput load() const;
 
+  // Of --disparity-offset, in columns; nullopt if it is not given.
+  std::optional<int> offset() const { return disparity_offset.number<int>(); }
+
   // The first frames whose waits are recorded; 0: none.
   std::uint64_t recorded_frames() const;
 
@@ -164,11 +173,17 @@ struct RunOptions {
   std::string beside_board = "";  // what BOARD may be beside a board
   BoardOptions board{of, beside_board};
   PictureOptions pictures{of};
+  Option disparity_offset =
+      Option(of, "--disparity-offset", "N",
+             "Columns that the left table subtracts from every disparity of rectified pairs, also below 0: "
+             "disparities N .. N+D-1 are found, and truth is that of the left picture as it is",
+             {number<int>("an integer, -8191..8191",
+                          [](int columns) { return columns > -8192 && columns < 8192; })});
   Option frames = Option(
       of, "--frames", "N",
       "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows pair f "
       "modulo "
-      "the number of pairs (default 1; with --sequence and --video as many as there are pairs)",
+      "the number of pairs (default: as many as there are pairs, 1 with --synthetic)",
       {number<std::uint64_t>("an integer, 1 or more", [](std::uint64_t count) { return count > 0; })});
   SourceOption source{
       of,

@@ -95,7 +95,7 @@ GrayImage nearest_disparity(const media::Truth& truth, int disparities) {
   GrayImage result(truth.width, truth.height, kernels::kInvalidDisparity);
   for (std::size_t i = 0; i < truth.levels.size(); ++i) {
     const double nearest = std::floor(truth.levels[i] / truth.scale + 0.5);
-    if (truth.levels[i] != 0 && nearest < disparities) result.pixels[i] = static_cast<std::uint8_t>(nearest);
+    if (nearest < disparities) result.pixels[i] = static_cast<std::uint8_t>(nearest);
   }
   return result;
 }

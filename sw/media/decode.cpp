@@ -208,10 +208,8 @@ Truth decode_deep_png(std::string_view bytes) {
   for (std::size_t y = 0; y < height; ++y) rows.push_back(reinterpret_cast<png_bytep>(&levels[y * width]));
   png_read_image(reader.png, rows.data());
   png_read_end(reader.png, nullptr);
-  Truth truth;
-  truth.width = size.width;
-  truth.height = size.height;
-  truth.levels.assign(levels.begin(), levels.end());
+  Truth truth(size.width, size.height);
+  truth.set_levels(levels);
   return truth;
 }
 
@@ -222,20 +220,17 @@ Truth decode_pfm(std::string_view bytes) {
   const std::string_view order = words.next();  // a scale of brightness; its sign is the order of the bytes
   const Picture size = new_picture(width, height, 1);
   if (words.rest().size() < 4 * size.samples.size()) refuse_damaged();
-  Truth truth;
-  truth.width = size.width;
-  truth.height = size.height;
-  truth.levels.resize(size.samples.size());
+  std::vector<float> levels(size.samples.size());
   for (std::uint64_t y = 0; y < height; ++y) {  // the last row comes first
     for (std::uint64_t x = 0; x < width; ++x) {
       std::array<char, 4> number{};
       words.rest().copy(number.data(), 4, 4 * ((height - 1 - y) * width + x));
       if (order[0] != '-') std::reverse(number.begin(), number.end());
-      float level = 0;
-      std::memcpy(&level, number.data(), 4);
-      truth.levels[y * width + x] = std::isfinite(level) && level > 0 ? level : 0;
+      std::memcpy(&levels[y * width + x], number.data(), 4);
     }
   }
+  Truth truth(size.width, size.height);
+  truth.set_levels(levels);
   return truth;
 }
 

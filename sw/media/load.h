@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,19 +14,37 @@
 
 namespace stereotlm::media {
 
-// Ground truth as stored, referenced to the left picture: disparity = level / scale; level 0 is unknown. It
-// keeps the levels, so that comparisons with an integer scale are exact.
+// Ground truth, referenced to the left picture: disparity = level / scale. It keeps the levels as stored, so
+// that comparisons with an integer scale are exact.
 struct Truth {
-  Truth() = default;
-  Truth(const kernels::GrayImage& grey, double of_scale)
-      : width(grey.width),
-        height(grey.height),
-        levels(grey.pixels.begin(), grey.pixels.end()),
-        scale(of_scale) {}
+  static constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
-  float at(int x, int y) const {
-    return levels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x)];
+  Truth() = default;
+  // Unknown everywhere.
+  Truth(int width_pixels, int height_pixels, double of_scale = 1)
+      : width(width_pixels),
+        height(height_pixels),
+        levels(static_cast<std::size_t>(width_pixels) * static_cast<std::size_t>(height_pixels), kUnknown),
+        scale(of_scale) {}
+  // Level 0 is unknown.
+  Truth(const kernels::GrayImage& grey, double of_scale) : Truth(grey.width, grey.height, of_scale) {
+    set_levels(grey.pixels);
+  }
+
+  // `stored`: levels of a file, as many as there are pixels. Those that are not above 0 or not finite are
+  // unknown.
+  template <typename Levels>
+  void set_levels(const Levels& stored) {
+    std::transform(stored.begin(), stored.end(), levels.begin(), [](const auto level) {
+      const auto known = static_cast<float>(level);
+      return known > 0 && std::isfinite(known) ? known : kUnknown;
+    });
+  }
+
+  float at(int x, int y) const { return levels[index(x, y)]; }
+  float& at(int x, int y) { return levels[index(x, y)]; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 
   int width = 0;              // pixels
@@ -37,8 +56,11 @@ struct Truth {
 // The number of candidate disparities (0, 1, ..) that a board needs to find every known disparity of the
 // truth, rounded up. It is a double because a small scale takes it beyond every integer.
 inline double disparities_needed(const Truth& truth) {
-  const auto largest = std::max_element(truth.levels.begin(), truth.levels.end());
-  return largest == truth.levels.end() ? 1 : std::ceil(*largest / truth.scale) + 1;
+  float largest = 0;
+  for (const float level : truth.levels) {
+    if (level != Truth::kUnknown) largest = std::max(largest, level);
+  }
+  return std::ceil(largest / truth.scale) + 1;
 }
 
 // load_gray() reads PNG, JPEG, PGM, PPM and PAM, and by OpenCV BMP, TIFF, WebP, JPEG 2000 and

@@ -138,16 +138,29 @@ Texture noise(std::uint64_t seed, double level) {
   };
 }
 
+constexpr double kBlack = 30;  // grey levels of a grid
+constexpr double kWhite = 220;
+
 // A chessboard on white. The unit is a square and the first inner corner is the origin; the square above and
 // to the left of it is black.
 Texture chessboard(const GridShape& shape) {
   return [columns = shape.columns, rows = shape.rows](const Vector2d& position) {
-    constexpr double kBlack = 30;
-    constexpr double kWhite = 220;
     const std::int64_t column = below(position.x());
     const std::int64_t row = below(position.y());
     const bool on_squares = column >= -1 && column < columns && row >= -1 && row < rows;
     return on_squares && (column + row) % 2 == 0 ? kBlack : kWhite;
+  };
+}
+
+// Black circles on white. The unit is GridShape::square_mm and the centre of the first circle is the origin.
+Texture circles(const GridShape& shape) {
+  const GridShape in_units = {shape.columns, shape.rows, 1, shape.pattern};
+  const double radius = shape.pattern == calib::Pattern::kCircles ? 0.3 : 0.5;
+  return [radius, centres = calib::corner_points(in_units)](const Vector2d& position) {
+    const auto is_inside = [&](const Vector3d& centre) {
+      return (centre.head<2>() - position).norm() < radius;
+    };
+    return std::any_of(centres.begin(), centres.end(), is_inside) ? kBlack : kWhite;
   };
 }
 
@@ -285,9 +298,10 @@ Scene random_scene(std::uint64_t seed, const Rig& rig) {
   return {std::move(surfaces), 0};
 }
 
-// The inner corners and the corners at the border of the black and white squares.
+// The corners of squares of square_mm that cover the grid, with one square around its corners.
 std::vector<Vector3d> square_corners(const GridShape& shape) {
-  std::vector<Vector3d> points = calib::corner_points({shape.columns + 2, shape.rows + 2, shape.square_mm});
+  const Eigen::Vector2i last = shape.extent().cast<int>();
+  std::vector<Vector3d> points = calib::corner_points({last.x() + 3, last.y() + 3, shape.square_mm});
   for (Vector3d& point : points) point -= Vector3d(shape.square_mm, shape.square_mm, 0);
   return points;
 }
@@ -332,8 +346,8 @@ Eigen::Isometry3d grid_pose(std::uint64_t seed, const Rig& rig, const GridShape&
   constexpr double kRootOfTwo = 1.4142135623730951;
   SplitMix random(random_for(seed, Part::poses).next() + static_cast<std::uint64_t>(number));
 
-  const Vector2d middle = Vector2d(shape.columns - 1, shape.rows - 1) * shape.square_mm / 2;
-  const Vector2d squares = Vector2d(shape.columns + 1, shape.rows + 1) * shape.square_mm;
+  const Vector2d middle = shape.extent() * shape.square_mm / 2;
+  const Vector2d squares = (shape.extent() + Vector2d(2, 2)) * shape.square_mm;
   const double focal = rig.left.matrix(0, 0);
   // The squares fill this part of a side of the picture.
   const double part = 0.4 + 0.3 * std::fmod(number * kGoldenRatio, 1.0);
@@ -468,9 +482,10 @@ SyntheticRig::SyntheticRig(std::uint64_t seed, int width, int height)
 SyntheticRig::Pair SyntheticRig::grid_view(const GridShape& shape, int number) const {
   const Eigen::Isometry3d pose = grid_pose(seed_, rig_, shape, number);
   const Vector2d border(2, 2);
-  const Eigen::AlignedBox2d extent(-border, Vector2d(shape.columns - 1, shape.rows - 1) + border);
+  const Eigen::AlignedBox2d extent(-border, shape.extent() + border);
   const Matrix3d axes = pose.linear() * shape.square_mm;
-  const Scene scene = {{plane(pose.translation(), axes.col(0), axes.col(1), extent, chessboard(shape))},
+  Texture texture = shape.pattern == calib::Pattern::kChessboard ? chessboard(shape) : circles(shape);
+  const Scene scene = {{plane(pose.translation(), axes.col(0), axes.col(1), extent, std::move(texture))},
                        kGridBackground};
   return {view_->left.picture(scene), view_->right.picture(scene)};
 }

@@ -15,7 +15,7 @@ namespace made_rig {
 struct View;  // the scene, and the cameras
 }
 
-// A rig whose parameters are known exactly. It renders pictures of chessboards, to calibrate the cameras, and
+// A rig whose parameters are known exactly. It renders pictures of grids, to calibrate the cameras, and
 // of a textured scene: a wall, a floor, a slanted panel and spheres. The same seed gives the same pictures on
 // every machine, within floating-point accuracy.
 //
@@ -34,13 +34,13 @@ class SyntheticRig {
     kernels::GrayImage right;
   };
 
-  // The pictures of the chessboard, with a white border before a grey background, in pose `number`: 0, 1, ..
-  // The chessboard fills a good part of both pictures. It is tilted from the line of sight by 10 to 35
+  // The pictures of the grid, with a white border before a grey background, in pose `number`: 0, 1, .. The
+  // grid fills a good part of both pictures. It is tilted from the line of sight by 10 to 35
   // degrees, and rolled. Every square lies wholly inside both pictures. A dozen poses suffice to calibrate
   // the rig. `shape` has no problems(). Throws std::domain_error if the pictures have no room for the board,
   // such as pictures of a few rows.
   Pair grid_view(const calib::GridShape& shape, int number) const;
-  // The exact positions of the inner corners in the pictures of grid_view(). Throws as grid_view() does.
+  // The exact positions of the grid's corners in the pictures of grid_view(). Throws as grid_view() does.
   calib::GridPair grid_corners(const calib::GridShape& shape, int number) const;
 
   // The pictures of the scene.

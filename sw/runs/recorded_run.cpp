@@ -35,8 +35,8 @@ struct RecordedFile {
 std::vector<RecordedFile> inputs_of(const RecordedOptions& options) {
   std::vector<RecordedFile> files;
   const auto add = [&files](const char* option, const InputFile& file) { files.push_back({option, file}); };
-  if (options.left) add("--left", *options.left);
-  if (options.right) add("--right", *options.right);
+  for (const InputFile& file : options.left) add("--left", file);
+  for (const InputFile& file : options.right) add("--right", file);
   if (options.sequence) {
     for (const InputFile& file : options.sequence->files)
       add("--sequence", {(fs::path(options.sequence->path) / file.path).string(), file.sha256});
@@ -197,7 +197,8 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   for (const RecordedFile& each : inputs_of(run.options))
     input.inputs.push_back({each.option, each.file.path});
   auto pictures = static_cast<const InputPictures&>(run.options);
-  input.pairs = open_source(pictures, &run.board, found).pairs;
+  OpenedSource source = open_source(pictures, &run.board, found);
+  input.pairs = std::move(source.pairs);
   const std::size_t pairs = pictures.sequence ? pictures.sequence->files.size() / 2 : 0;
   const std::size_t recorded = pictures.sequence ? run.options.sequence->files.size() / 2 : 0;
   if (input.pairs && pairs != recorded)
@@ -207,10 +208,14 @@ RunInput open_again(const RecordedRun& run, process::Problems& problems) {
   std::optional<CalibrationInput> calibration;
   if (run.options.calibration)
     calibration = load_calibration(run.options.calibration->file.path, &run.board, found);
-  found.attempt("", [&] { input.tables = tables_of(run.board, calibration); });
+  found.attempt("", [&] {
+    const int offset = run.options.disparity_offset.value_or(0);
+    input.tables = tables_of(run.board, calibration, offset);
+    source.truth_offset = truth_offset(run.board, calibration, offset);
+  });
   if (run.options.truth)
-    input.truth =
-        open_truth({"--truth", run.options.truth->path}, run.options.truth_scale, &run.board, found);
+    input.truth = open_truth({"--truth", run.options.truth->path}, run.options.truth_scale, source,
+                             input.frames - 1, found);
   if (!found.empty()) problems.add(fmt::format("{}: {}", name_of(run), found.in_one_line()));
   return input;
 }

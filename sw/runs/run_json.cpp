@@ -93,6 +93,14 @@ struct Writer {
     if (value) given(key, *value, true);
   }
   void given(const char* key, bool value) { given(key, value, value); }
+  // A picture, or a list of several.
+  void side(const char* key, const std::vector<InputFile>& files) {
+    if (files.size() == 1) {
+      given(key, files.front(), true);
+    } else {
+      given(key, files, !files.empty());
+    }
+  }
 
   Json document = {{"schema", 1}, {"command", "run"}};
 };
@@ -115,6 +123,13 @@ struct Reader {
   void given(const char* key, std::optional<Value>& value) {
     if (document.contains(key)) given(key, value.emplace());
   }
+  void side(const char* key, std::vector<InputFile>& files) {
+    if (document.contains(key) && document[key].is_object()) {
+      given(key, files.emplace_back());
+    } else {
+      given(key, files);
+    }
+  }
 
   const Json document;
 };
@@ -128,13 +143,15 @@ void each_key(Document& document, Options& options) {
   document.required("frames", options.frames);
   document.given("timing_only", options.timing_only);
   document.given("verify", options.verify);
-  document.given("left", options.left);
-  document.given("right", options.right);
+  document.side("left", options.left);
+  document.side("right", options.right);
   document.given("sequence", options.sequence);
   document.given("video", options.video, !options.video.empty());
   document.given("video_layout", options.video_layout, !options.video.empty());
   document.given("synthetic", options.synthetic);
+  document.given("fit", options.fit, !options.fit.empty());
   document.given("calibration", options.calibration);
+  document.given("disparity_offset", options.disparity_offset);
   document.given("truth", options.truth);
   document.given("truth_scale", options.truth_scale, options.truth.has_value());
   document.given("save_frames", options.save_frames);
@@ -152,8 +169,12 @@ void check(const RecordedOptions& options) {
   require(options.fidelity == "fast" || options.fidelity == "cycle",
           fmt::format("fidelity = {}: must be fast or cycle", options.fidelity));
   require(options.frames > 0, "frames = 0: must be 1 or more");
-  require(options.left.has_value() == options.right.has_value(), "left and right: one is without the other");
-  const int sources = int{options.left.has_value()} + int{options.sequence.has_value()} +
+  require(options.left.size() == options.right.size(), "left and right: must be as many");
+  require(!options.disparity_offset || !options.calibration,
+          "disparity_offset: does not go with calibration");
+  require(options.fit.empty() || options.fit == "crop" || options.fit == "pad",
+          fmt::format("fit = {}: must be crop or pad", options.fit));
+  const int sources = int{!options.left.empty()} + int{options.sequence.has_value()} +
                       int{!options.video.empty()} + int{options.synthetic.has_value()};
   require(sources == 1 || (sources == 0 && options.timing_only),
           fmt::format("{} sources of pictures: must be one", sources));

@@ -27,11 +27,12 @@ struct InputFolder {
 
 // The pictures of a run. At most one source is there: a pair, a sequence, a video or a synthetic scene.
 struct InputPictures {
-  std::optional<InputFile> left;
-  std::optional<InputFile> right;
+  std::vector<InputFile> left;   // that of one pair, or those of a sequence of pairs
+  std::vector<InputFile> right;  // as many
   std::optional<InputFolder> sequence;
   std::vector<InputFile> video;
   std::string video_layout;                // only with a video
+  std::string fit;                         // of --fit, or empty
   std::optional<std::uint64_t> synthetic;  // the seed
 };
 
@@ -45,6 +46,7 @@ struct RecordedOptions : InputPictures {
   bool verify = false;  // also false if the comparison was interrupted
   std::uint64_t frames = 1;
   std::optional<InputCalibration> calibration;
+  std::optional<int> disparity_offset;  // only without a calibration
   std::optional<InputFile> truth;
   double truth_scale = 1;  // only with a truth
   bool save_frames = false;

@@ -15,6 +15,7 @@
 #include "sw/media/encode.h"
 #include "sw/process/client.h"
 #include "sw/process/streams.h"
+#include "sw/runs/pair_check.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_library.h"
 #include "sw/stats/accuracy.h"
@@ -71,7 +72,8 @@ std::optional<stats::Accuracy> accuracy_to_show(const RunInput& input, const Res
   if (accuracy || input.calibration || input.timing_only) return accuracy;
   const std::optional<media::Truth> truth = input.pairs->truth(last.number);
   if (!truth) return std::nullopt;
-  return stats::accuracy(last.disparity, *truth);
+  return stats::accuracy(last.disparity,
+                         media::with_offset(*truth, input.described.disparity_offset.value_or(0)));
 }
 
 // `accuracy`: against --truth.
@@ -202,6 +204,9 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   process::print(input.json ? files::json_text(stats::run_document(statistics, extras))
                             : stats::console_table(statistics, input.board, extras));
   say_lost_pixels(statistics);
+  constexpr double kFewAnswers = 50;  // percent: exchanged pictures give no more
+  if (!input.calibration && extras.answered_percent.value_or(100) < kFewAnswers)
+    say_if_exchanged(input, input.pairs->pair(last.number));
   if (const double bad = accuracy ? accuracy->bad_1_percent.value_or(0) : 0;
       bad > stats::kDoubtfulBad1Percent)
     process::say("note", fmt::format("--truth: {:.2f} % of the answers are off by more than 1: is it of this "

@@ -13,7 +13,8 @@
 namespace stereotlm::stats {
 namespace {
 
-// The column at which the right picture shows a left pixel; outside 0..width-1 if it does not show the pixel.
+// The column at which the right picture shows a left pixel; outside 0..width-1 if it does not show the pixel,
+// or if the truth is unknown, which is infinite.
 double right_column(int x, double level, double scale) { return std::floor(x - level / scale + 0.5); }
 
 // For each pixel of a row: whether its truth is known and the right camera sees it too. Truths are compared
@@ -22,11 +23,11 @@ std::vector<bool> known_and_visible(const media::Truth& truth, int y) {
   const int width = truth.width;
   const auto inside = [width](double column) { return column >= 0 && column < width; };
   // [right column]: the largest truth of the left pixels that match a pixel of this column.
-  std::vector<double> nearest_level(static_cast<std::size_t>(width), 0);
+  std::vector<double> nearest_level(static_cast<std::size_t>(width), -media::Truth::kUnknown);
   for (int x = 0; x < width; ++x) {
     const double level = truth.at(x, y);
     const double column = right_column(x, level, truth.scale);
-    if (level == 0 || !inside(column)) continue;
+    if (!inside(column)) continue;
     double& nearest = nearest_level[static_cast<std::size_t>(column)];
     nearest = std::max(nearest, level);
   }
@@ -34,7 +35,7 @@ std::vector<bool> known_and_visible(const media::Truth& truth, int y) {
   for (int x = 0; x < width; ++x) {
     const double level = truth.at(x, y);
     const double column = right_column(x, level, truth.scale);
-    if (level == 0 || !inside(column)) continue;
+    if (!inside(column)) continue;
     result[static_cast<std::size_t>(x)] =
         nearest_level[static_cast<std::size_t>(column)] - level <= truth.scale;
   }

@@ -173,8 +173,18 @@ std::string sha256_of(const platform::Tables& tables) {
 }
 
 platform::Tables tables_of(const platform::BoardConfig& board,
-                           const std::optional<CalibrationInput>& calibration) {
-  return calibration ? calibration->tables : platform::identity_tables(board);
+                           const std::optional<CalibrationInput>& calibration, int disparity_offset) {
+  return calibration ? calibration->tables : platform::identity_tables(board, disparity_offset);
+}
+
+int truth_offset(const platform::BoardConfig& board, const std::optional<CalibrationInput>& calibration,
+                 int disparity_offset) {
+  if (!calibration) return disparity_offset;
+  const int offset = calibration->calibration->disparity_offset;
+  const platform::Tables moved = platform::identity_tables(board, offset);
+  const bool only_moves = calibration->tables.left->entries == moved.left->entries &&
+                          calibration->tables.right->entries == moved.right->entries;
+  return only_moves ? offset : 0;
 }
 
 }  // namespace stereotlm::runs

@@ -60,8 +60,13 @@ std::optional<CalibrationInput> load_calibration(const std::string& path, const 
 // The SHA-256 over both tables. It identifies a calibration.
 std::string sha256_of(const platform::Tables& tables);
 
-// The tables of the calibration, or identity tables without one.
+// The tables of the calibration, or identity tables with this offset without one.
 platform::Tables tables_of(const platform::BoardConfig& board,
-                           const std::optional<CalibrationInput>& calibration);
+                           const std::optional<CalibrationInput>& calibration, int disparity_offset = 0);
+
+// The columns by which the tables move the left picture, if they do nothing else: its ground truth moves with
+// it. 0 if the tables rectify; truth is then that of the rectified picture. Both arguments as for tables_of().
+int truth_offset(const platform::BoardConfig& board, const std::optional<CalibrationInput>& calibration,
+                 int disparity_offset);
 
 }  // namespace stereotlm::runs

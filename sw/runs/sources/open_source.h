@@ -14,6 +14,7 @@
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
 #include "sw/files/output_file.h"
+#include "sw/media/fit.h"
 #include "sw/media/load.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_json.h"
@@ -78,24 +79,29 @@ using files::NamedFile;
 
 // The result of open_source().
 struct OpenedSource {
+  media::Fit fit;
   std::unique_ptr<PairSource> pairs;  // null if it cannot be used
+  int truth_offset = 0;               // truth_offset() of the tables, set by the caller
+  std::vector<media::Size> sizes;     // of the pairs before the fit, in turn; empty if they need none
   std::vector<NamedFile> files;       // files that were named or found, usable or not
   std::vector<std::string> notes;     // for standard error
 };
 
-// The pairs of a client (process/client.h): its arrays `left` and `right`. Throws std::runtime_error if one
-// is missing, or if their shapes do not fit each other or the board.
-std::unique_ptr<PairSource> pairs_of_client(const platform::BoardConfig& board);
-
 // Opens the source of pictures, checks all its pictures, and reports problems. The caller names at most one
 // source in `pictures`. The function makes its paths absolute, and adds the checksums of its files. `board`:
-// null if unknown; the sizes of the pictures are then not checked.
+// null if unknown; the sizes of the pictures are then not checked. `has_calibration`: no message then
+// recommends --fit.
 OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* board,
-                         process::Problems& problems);
+                         process::Problems& problems, bool has_calibration = false);
 
-// Loads the ground truth and checks its size. Reports problems and returns nullopt if there are any. `board`:
-// null if unknown; the size is then not checked.
+// Takes the pairs of a client (process/client.h) as the source: its arrays `left` and `right`. The board must
+// be known. Throws std::runtime_error if one is missing, or if their shapes do not fit each other or the board.
+void open_arrays(OpenedSource& opened);
+
+// Loads the ground truth of the pair that a frame shows, and checks its size. Reports problems and returns
+// nullopt if there are any.
 std::optional<media::Truth> open_truth(const NamedFile& file, std::optional<double> scale,
-                                       const platform::BoardConfig* board, process::Problems& problems);
+                                       const OpenedSource& source, std::uint64_t frame,
+                                       process::Problems& problems);
 
 }  // namespace stereotlm::runs

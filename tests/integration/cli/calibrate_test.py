@@ -1,6 +1,7 @@
 """calibrate, and --calibration, on a rig that is made up."""
 
 import hashlib
+import itertools
 import re
 import shutil
 import signal
@@ -8,8 +9,8 @@ import struct
 import time
 
 import program
-from pictures import pgm, read_pfm, read_png, read_png_16
-from program import PRELOADED, RESULT_FILES, ProgramTest, made_rig, run, sets, wait_until
+from pictures import noise, pgm, read_pfm, read_png, read_png_16
+from program import PRELOADED, RESULT_FILES, ProgramTest, Terminal, made_rig, run, sets, wait_until
 
 GRID = ["--grid", "7x5", "--square-mm", "30"]
 SIDES = ("left", "right")
@@ -71,6 +72,64 @@ class Made(CalibrateTest):
             table = (self.folder / f"new_{side}.lut").read_bytes()
             self.assertEqual(table, (self.home / f"rig_{side}.lut").read_bytes())
         self.assertFalse((self.folder / "new_pictures").exists())
+
+    def test_takes_pairs_side_by_side(self):
+        (self.folder / "both").mkdir()
+        for number in range(4):
+            left, right = (read_png(self.pictures / f"{side}_0{number}.png")[3] for side in SIDES)
+            if number == 3:
+                right = [bytes(640)] * 480
+            rows = b"".join(bytes(a) + bytes(b) for a, b in zip(left, right))
+            self.file(f"both/{number}.pgm", pgm(1280, 480, rows))
+        out = ["--disparities", 120, "--out", self.folder / "both.yaml"]
+        beside = ["calibrate", *GRID, *out, "--side-by-side"]
+        process = run(*beside, self.folder / "both" / "*.pgm")
+        self.succeeds(process)
+        self.assertIn("3.pgm' (right half): no grid of 7x5 inner corners found: the pair", process.stderr)
+        self.succeeds(self.calibrate())
+        for side in SIDES:
+            table = (self.folder / f"new_{side}.lut").read_bytes()
+            self.assertEqual((self.folder / f"both_{side}.lut").read_bytes(), table)
+        odd = self.file("odd.pgm", pgm(1281, 2, bytes(1281 * 2)))
+        self.refused(run(*beside, odd), f"--side-by-side '{odd}': 1281 pixels wide: must be even")
+        same = self.file("same.pgm", pgm(8, 2, bytes(16)))
+        self.refused(run(*beside, same), "(right half): the same picture as --side-by-side", "(left half)")
+        rule = "--side-by-side: has both pictures of a pair"
+        self.refused(run(*beside, same, "--left", self.left), rule)
+        inside = [self.folder / "both_drawings" / "corners_0*.png"]
+        self.refused(run(*beside, *inside), "--side-by-side", "lies in it and would be replaced")
+
+    def test_takes_grids_of_circles(self):
+        for pattern, grid in (("circles", "7x5"), ("asymmetric_circles", "4x7")):
+            shown = ["--pattern", pattern, "--grid", grid, "--square-mm", 30]
+            found = fields(self.succeeds(run("calibrate", "--synthetic", 3, *shown, "--out", self.new)))
+            self.assertIn("9 of 9 with the grid", found["pairs"])
+            known = [float(word) for word in re.findall(r"[\d.]+(?= px| mm)", found["known to be"])]
+            self.assertLess(abs(float(found["left camera"].split()[2].strip(",")) / known[0] - 1), 0.005)
+            self.assertLess(abs(float(found["baseline"].split()[0]) / known[1] - 1), 0.005)
+            self.assertIn(f"pattern: {pattern}\n", self.new.read_text())
+
+    def test_answers_dark_pictures(self):
+        """A search with adaptive thresholds would take minutes."""
+        dark = [value % 23 for value in noise(1280, 960, 5)]
+        for side in SIDES:
+            for number in range(3):
+                rows = read_png(self.pictures / f"{side}_0{number}.png")[3]
+                large = b"".join(bytes(v for v in row for _ in "12") * 2 for row in rows)
+                self.file(f"{side}_{number}.pgm", pgm(1280, 960, large))
+            self.file(f"{side}_3.pgm", pgm(1280, 960, dark[::-1] if side == "left" else dark))
+        sides = [word for side in SIDES for word in (f"--{side}", self.folder / f"{side}_*.pgm")]
+        process = run("calibrate", *sides, *GRID, "--disparities", 254, "--out", self.new, timeout=100)
+        self.succeeds(process)
+        self.assertIn("left_3.pgm': no grid of 7x5 inner corners found", process.stderr)
+
+    def test_shows_each_picture_on_a_terminal(self):
+        for number, side in itertools.product(range(6), SIDES):
+            self.file(f"{side}_{number}.pgm", pgm(1280, 960, noise(1280, 960, f"{side}{number}")))
+        sides = [word for side in SIDES for word in (f"--{side}", self.folder / f"{side}_*.pgm")]
+        terminal = Terminal(["calibrate", *sides, *GRID, "--out", self.new], columns=300)
+        terminal.read_until(r"\d+/12 pictures searched.*; '.*right_\d.pgm': no grid of 7x5 inner corners")
+        self.assertEqual(terminal.finish()[0], 2)
 
     @program.slow
     def test_replaces_an_earlier_calibration(self):
@@ -179,7 +238,7 @@ class Run(CalibrateTest):
         few = r"note: --calibration: of 0 conspicuous points .* too few to see whether it is of this rig"
         for left, right, text in (
             ("scene_left.png", lower, r"warning: .* differ by \d\.\d\d pixels on average: is it of this rig"),
-            ("scene_right.png", "scene_left.png", "warning: --calibration: .* is it of this rig"),
+            ("scene_right.png", "scene_left.png", r"warning: --cal.* are left and right exchanged\?"),
             (flat, flat, few),
         ):
             process = run(*self.scene(left=left, right=right))
@@ -261,7 +320,8 @@ class RefusedPictures(CalibrateTest):
         for left, right, *texts in (
             ([none], "right_00.png", f"--left '{none}': no such file"),
             ("left_*.png", "right_0[0-4].png", "9 left pictures", "5 right ones", "must be as many"),
-            (sizes, "right_0[01].png", f"'{sizes[1]}': 32x24 pixels: must be as large as", "640x480"),
+            (sizes, "right_0[01].png", f"of several sizes: 1 of 32x24, such as --left '{sizes[1]}'; ",
+             "3 of 640x480, such as ", "set to one size, or scale those that show the whole view"),
             ([large], "right_00.png",
              f"--left '{large}': 2052x2052 pixels: a board's images with a look-up table are 4..2048"),
             ([text], "right_00.png", f"--left '{text}'", "not a picture"),
@@ -335,7 +395,9 @@ class Usage(ProgramTest):
             ("--square-mm", "nan", "square_mm = nan: must be"),
             ("--disparities", "255", "--disparities = 255: must be an integer, 1..254"),
             ("--disparity-offset", "1.5", "--disparity-offset = 1.5: must be auto or an integer"),
-            ("--synthetic", "1", "does not go with --left and --right"),
+            ("--synthetic", "1", "does not go with --left, --right and --side-by-side"),
+            ("--pattern", "dots", "--pattern = dots: must be chessboard, circles or asymmetric_circles"),
+            ("--pattern", "asymmetric_circles", "rows = 6: must be odd with asymmetric circles"),
             ("--out", "rig.yml", "--out 'rig.yml': must end in .yaml"),
         ):
             arguments = [word for pair in {**good, option: value}.items() for word in pair]
@@ -366,6 +428,7 @@ class PrintGrid(ProgramTest):
             self.refused(process, f"--left: {rule}", f"--disparities: {rule}")
             self.refused(self.print_grid("none/grid.svg"), "there is no such folder")
             self.refused(self.print_grid("new.svg", size=()), "--square-mm: missing")
+            self.refused(self.print_grid("new.svg", "--pattern", "circles"), "draws a chessboard only")
 
 
 if __name__ == "__main__":

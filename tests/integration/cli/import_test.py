@@ -1,5 +1,8 @@
 """calibrate --import and --export: calibrations of other programs."""
 
+import hashlib
+import struct
+
 import program
 from program import PRELOADED, ProgramTest, made_rig, run
 
@@ -53,6 +56,19 @@ class ImportTest(ProgramTest):
         result = self.folder / "result"
         self.succeeds(run(*scene, "--calibration", self.folder / "mine.yaml", "--out", result))
         self.assertTrue((result / "depth.png").exists())
+
+    def test_a_run_warns_of_tables_that_are_mostly_empty(self):
+        self.succeeds(self.imported(self.file("calib.txt", MIDDLEBURY), "--disparity-offset", "20"))
+        rig, lut = self.folder / "mine.yaml", self.folder / "mine_left.lut"
+        empty = b"".join(struct.pack("<I", 2**31 + (y << 16) + x + 40 if x + 40 < 64 else 0)
+                         for y in range(32) for x in range(64))
+        text = rig.read_text().replace(program.sha256(lut), hashlib.sha256(empty).hexdigest())
+        lut.write_bytes(empty)
+        rig.write_text(text.replace("disparity_offset: 20", "disparity_offset: 40"))
+        size = program.sets("image={width: 64, height: 32}", "matcher.disparities=16")
+        process = run("run", "fpl2003", *PRELOADED, *size, "--synthetic", "1", "--calibration", rig)
+        self.succeeds(process)
+        self.assertIn("warning: --calibration: 1280 of 2048 entries of the left table are", process.stderr)
 
     def test_refuses_what_it_cannot_do(self):
         calib = self.file("calib.txt", MIDDLEBURY)

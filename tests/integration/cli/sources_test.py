@@ -1,7 +1,9 @@
 """Where the pictures of a run come from: sequences, videos, the synthetic scene."""
 
+import math
 import os
 import shutil
+import struct
 import subprocess
 
 import program
@@ -95,6 +97,47 @@ class Sequence(SourceTest):
         refused("right_01.png", "left_01.png")
 
 
+class Patterns(SourceTest):
+    def sides(self, *names):
+        """Patterns of pairs with these names."""
+        for number, name in enumerate(names):
+            for side in ("left", "right"):
+                self.file(f"{side}/{name}", self.picture(number, side))
+        return ["--left", self.folder / "left" / "*.png", "--right", self.folder / "right" / "*.png"]
+
+    def test_pairs_are_shown_in_natural_order_and_recorded(self):
+        self.shows_pairs(4, *self.sides("a8_1.png", "a09_1.png", "a10_1.png", "a11_1.png"))
+        recorded = self.run_json()["right"]
+        self.assertEqual([entry["path"] for entry in recorded],
+                         [f"{self.folder}/right/a{number}_1.png" for number in ("8", "09", "10", "11")])
+        self.succeeds(run("diff", self.out, self.out))  # repeats the run
+        shutil.copy(self.left, self.folder / "right" / "a10_1.png")
+        self.refused(run("diff", self.out, self.out), "right/a10_1.png': SHA-256")
+
+    def test_what_is_left_out_is_said(self):
+        sources = self.sides("x0.png", "x5.png", "x10.png", "x20.png")
+        self.file("left/x15.PNG")
+        left, right = self.folder / "left", self.folder / "right"
+        gap = "{0}: '{1}/x20.png' follows '{1}/x10.png': numbers between them are missing"
+        ending = f"--left '{left}/*.png': '{left}/x15.PNG' is left out: the case of the ending differs"
+        gaps = [gap.format("--left", left), gap.format("--right", right)]
+
+        def said():
+            process = self.run_with(*sources)
+            self.succeeds(process)
+            return process.stderr.replace("stereotlm: note: ", "").splitlines()
+
+        self.assertEqual(said(), [ending, *gaps])
+        (right / "x20.png").rename(right / "x15.png")
+        pairing = f"'{left}/x20.png' with '{right}/x15.png': do they belong together?"
+        paired = f"pictures are paired in the order of their names, {pairing}"
+        self.assertEqual(said(), [ending, gaps[0], paired])
+        for pattern, *texts in (("*.jpg", "*.jpg': no such file"),
+                                ("*.Png", "x0.png' and 3 more are left out"),
+                                ("x1*.png", "4 left pictures", "2 right ones", "must be as many")):
+            self.refused_in_one_line(self.run_with(*sources[:3], right / pattern), *texts)
+
+
 class Video(SourceTest):
     def video(self, name, length, *sides, below=False):
         """A video of the pictures of these sides, beside or below each other."""
@@ -142,6 +185,114 @@ class Video(SourceTest):
         note = f"--video '{video}': 2 frames can be decoded; its header says 4"
         self.assertEqual(process.stderr, f"stereotlm: note: {note}\n")
         self.assertEqual(self.stats()["frames"], 2)
+
+
+class Fit(SourceTest):
+    def pair_of(self, name, width, height, change):
+        """Files of a pair of this size and of its truth. `change`: of the rows of each."""
+        words = []
+        for seed, side in enumerate(("left", "right", "truth")):
+            pixels = noise(width, height, seed)
+            rows = change([pixels[y * width : (y + 1) * width] for y in range(height)], side)
+            path = self.file(f"{name}_{side}.pgm", pgm(len(rows[0]), len(rows), b"".join(rows)))
+            words += [f"--{side}", path]
+        return words
+
+    def equal(self, fit, width, height, change):
+        """What a board makes of pictures that it fits, and of those that are fitted before."""
+        self.succeeds(self.run_with(*self.pair_of("fitted", width, height, change), "--out", self.out))
+        expected = [self.stats(), (self.out / "disparity.png").read_bytes()]
+        raw = self.pair_of("raw", width, height, lambda rows, side: rows)
+        self.refused(self.run_with(*raw), "raw_left.pgm'", f"add --fit {fit}, or --set")
+        self.succeeds(self.run_with(*raw, "--fit", fit, "--out", self.out, "--verify"))
+        self.assertEqual([self.stats(), (self.out / "disparity.png").read_bytes()], expected)
+        self.assertEqual(self.run_json()["fit"], fit)
+        self.succeeds(run("diff", self.out, self.out))  # repeats the run, with its truth
+        return raw
+
+    def test_crop_takes_the_middle(self):
+        raw = self.equal("crop", 35, 26, lambda rows, side: [row[1:33] for row in rows[1:25]])
+        small = self.pair_of("small", 34, 26, lambda rows, side: rows)
+        crop = ["--fit", "crop"]
+        rule = "34x26 pixels: must be as large as"
+        self.refused(self.run_with(*raw[:2], *small[2:4], *crop), f"{rule} '{raw[1]}', 35x26")
+        self.refused(self.run_with(*raw[:4], *small[4:], *crop), f"{rule} the left picture, 35x26")
+
+    def test_pad_repeats_the_last_column_and_row(self):
+        def padded(rows, side):
+            if side == "truth":
+                return [row + bytes(2) for row in rows] + 4 * [bytes(WIDTH)]
+            rows = [row + 2 * row[-1:] for row in rows]
+            return rows + 4 * rows[-1:]
+
+        self.equal("pad", 30, 20, padded)
+
+    def test_fit_is_refused_where_it_means_nothing(self):
+        rig, _ = program.made_rig()
+        rule = "--fit: does not go with"
+        self.refused(self.run_small("--fit", "pad", "--calibration", rig), f"{rule} --calibration")
+        self.refused(self.run_with("--fit", "pad", "--synthetic", 1), f"{rule} --synthetic")
+
+
+class Exchanged(SourceTest):
+    def test_is_said_only_of_exchanged_pictures(self):
+        width, height, size = 160, 96, sets("image={width: 160, height: 96}", "matcher.disparities=24")
+        texture = noise(width + 8, height, 1)  # a disparity of 8
+        paths = [self.file(f"{first}.pgm", pgm(width, height, b"".join(
+            texture[y * (width + 8) + first :][:width] for y in range(height)))) for first in (0, 8)]
+        for left, right, is_said in ((*paths, False), (*reversed(paths), True)):
+            process = run("run", "fpl2003", *PRELOADED, *size, "--left", left, "--right", right)
+            self.assertEqual("are left and right exchanged?" in process.stderr, is_said, process.stderr)
+
+
+class Offset(SourceTest):
+    def test_is_that_of_a_calibration_with_identity_tables(self):
+        calib = self.file("calib.txt", f"""cam0=[9 0 5; 0 9 5; 0 0 1]\ncam1=[9 0 5; 0 9 5; 0 0 1]
+            baseline=50\nwidth={WIDTH}\nheight={HEIGHT}\n""")
+        truth = ["--truth", self.left, "--truth-scale", 16]
+        for offset in (-4, 3):
+            rig = self.folder / "rig.yaml"
+            self.succeeds(run("calibrate", "--import", calib, f"--disparity-offset={offset}", "--out", rig))
+            self.succeeds(self.run_small(*truth, "--calibration", rig, "--out", self.out))
+            expected = self.result()
+            self.succeeds(self.run_small(*truth, "--disparity-offset", offset, "--out", self.out))
+            self.succeeds(run("diff", self.out, self.out))  # repeats the run, with its truth
+            for name, found in self.result().items():
+                if name != "run.json":
+                    self.assertTrue(found == expected[name], name)
+            self.assertEqual(self.run_json()["disparity_offset"], offset)
+            self.assertFalse((self.out / "depth.png").exists())
+        joint = sets("fpga.tables=joint", "allocation.left_lut=bank6", "allocation.right_lut=bank6")
+        self.succeeds(self.run_small(*joint, "--disparity-offset", 3, "--out", self.out))
+        self.assertTrue(self.result()["disparity.png"] == expected["disparity.png"])
+        both = self.run_small("--disparity-offset", 3, "--calibration", rig)
+        self.refused(both, "--disparity-offset: does not go with --calibration")
+
+    def test_finds_the_disparities_from_the_offset_on(self):
+        found = []
+        for offset in (-9, 0, 9):
+            pixels = self.left.read_bytes()[-WIDTH * HEIGHT :]
+            rows = [pixels[y * WIDTH : (y + 1) * WIDTH] for y in range(HEIGHT)]
+            shifted = b"".join((4 * row)[WIDTH + offset + 1 :][:WIDTH] for row in rows)
+            right = self.file("shifted.pgm", pgm(WIDTH, HEIGHT, shifted))
+            head = f"Pf\n{WIDTH} {HEIGHT}\n-1\n".encode()
+            level = struct.pack("<f", max(offset, 0) + 1)
+            truth = ["--truth", self.file("truth.pfm", head + level * WIDTH * HEIGHT)]
+            words = ["--disparity-offset", offset, "--set", "matcher.disparities=4", "--out", self.out]
+            self.succeeds(self.run_small(*words, *truth, right=right))
+            found.append(self.stats()["accuracy"]["bad_1_percent"])
+            pixels = (self.out / "disparity.pfm").read_bytes()[-4 * WIDTH * HEIGHT :]
+            answers = [d for d in struct.unpack(f"<{WIDTH * HEIGHT}f", pixels) if d != math.inf]
+            self.assertGreater(len(answers), 100)
+            self.assertGreater(answers.count(1), 0.9 * len(answers))
+        self.assertEqual(found[0], 100, "a truth of 1 is 10 of the board")
+        self.assertLess(max(found[1:]), 10)
+
+    def test_needs_a_left_table_and_columns(self):
+        source = [*PRELOADED, *SMALL, *self.pair, "--disparity-offset"]
+        none = run("run", "fpl2003-no-calibration", *source, 5)
+        self.refused_in_one_line(none, "such as the preset fpl2003")
+        self.refused_in_one_line(run("run", "fpl2003", *source, -WIDTH), "must be less than the columns")
 
 
 class Truth(SourceTest):

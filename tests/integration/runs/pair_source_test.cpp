@@ -90,10 +90,10 @@ class OpenSourceTest : public ::testing::Test {
 
 TEST_F(OpenSourceTest, OnePairIsReadOnce) {
   InputPictures options;
-  options.left = InputFile{picture("l.png", 1), ""};
-  options.right = InputFile{picture("r.png", 2), ""};
+  options.left = {InputFile{picture("l.png", 1), ""}};
+  options.right = {InputFile{picture("r.png", 2), ""}};
   const OpenedSource source = opened(options);
-  std::filesystem::remove(options.left->path);
+  std::filesystem::remove(options.left[0].path);
   EXPECT_EQ(source.pairs->length(), 1U);
   for (const std::uint64_t frame : {0U, 1U, 100U}) {
     EXPECT_EQ(source.pairs->pair(frame).left, GrayImage(32, 24, 1));
@@ -143,8 +143,8 @@ TEST_F(OpenSourceTest, ASyntheticSceneIsThatOfItsSeed) {
 
 TEST_F(OpenSourceTest, WithoutABoardSizesAreNotChecked) {
   InputPictures options;
-  options.left = InputFile{picture("l.png", 1, 16), ""};
-  options.right = InputFile{picture("r.png", 2), ""};
+  options.left = {InputFile{picture("l.png", 1, 16), ""}};
+  options.right = {InputFile{picture("r.png", 2), ""}};
   process::Problems problems;
   open_source(options, nullptr, problems);
   EXPECT_TRUE(problems.empty());

@@ -61,8 +61,8 @@ TEST_F(VerificationTest, NamesThePicturesThatCannotBeReadAnyMoreAndWhy) {
   const test::ScratchFolder empty;
   const std::string left = empty.path() / "left.png";
   const std::string right = empty.path() / "right.png";
-  input.described.left = InputFile{left, ""};
-  input.described.right = InputFile{right, ""};
+  input.described.left = {InputFile{left, ""}};
+  input.described.right = {InputFile{right, ""}};
   EXPECT_EQ(failed_of({{0, {}, 123}}, {}),
             "--verify: the run at fidelity cycle: the pictures cannot be read any more: --left '" + left +
                 "': no such file; --right '" + right + "': no such file\n");

@@ -73,6 +73,49 @@ TEST_F(CalibrateTest, RecoversAKnownRigAndItsDisparities) {
   EXPECT_GT(static_cast<double>(right), 0.95 * static_cast<double>(answered));
 }
 
+TEST_F(CalibrateTest, RecoversAKnownRigFromCircles) {
+  const media::SyntheticRig known(8, 480, 360);
+  for (const GridShape& shape :
+       {GridShape{7, 5, 30, Pattern::kCircles}, GridShape{4, 9, 20, Pattern::kAsymmetricCircles}}) {
+    CalibrationRequest request;
+    request.grid = shape;
+    request.disparities = 160;
+    for (int number = 0; number < 8; ++number) {
+      auto view = known.grid_view(shape, number);
+      request.pictures.push_back({"left", "right", std::move(view.left), std::move(view.right)});
+    }
+    request.pictures[3].right = kernels::GrayImage(480, 360, 100);
+    const CalibrationResult found = calibrate(request);
+    const Rig& rig = found.calibration.rig;
+    EXPECT_EQ(found.pairs.size(), 7U);
+    EXPECT_EQ(found.skipped, std::vector<std::string>{"'right': no grid of " + shape.text() + " found"});
+    EXPECT_NEAR(rig.left.matrix(0, 0) / known.rig().left.matrix(0, 0), 1, 0.005);
+    EXPECT_LT((rig.rotation - known.rig().rotation).cwiseAbs().maxCoeff(), 0.01);
+    EXPECT_NEAR(rig.translation.norm() / known.rig().translation.norm(), 1, 0.005);
+    EXPECT_LT(found.calibration.quality.row_error.mean_px, 0.05);
+    // The circles are searched for again. Nearest pixels give an error of some tenths.
+    EXPECT_GE(found.calibration.quality.found_again.corners, 100U);
+    EXPECT_GT(found.calibration.quality.found_again.mean_px, 0.01);
+    EXPECT_LT(found.calibration.quality.found_again.mean_px, 0.4);
+  }
+}
+
+TEST_F(CalibrateTest, ReportsEachPictureAndNamesHalves) {
+  CalibrationRequest some = request(4);
+  std::vector<std::string> reports;
+  some.progress = [&reports](std::size_t pictures, const std::string& last) {
+    reports.push_back(std::to_string(pictures) + ' ' + last);
+  };
+  some.pictures[1].right_name = some.pictures[1].left_name = "both.png";
+  some.pictures[1].right = kernels::GrayImage(kWidth, kHeight, 100);
+  calibrate(some);
+  ASSERT_EQ(reports.size(), 8U);
+  EXPECT_EQ(reports[0], "1 'left0': found");
+  EXPECT_EQ(reports[2], "3 'both.png' (left half): found");
+  EXPECT_EQ(reports[3], "4 'both.png' (right half): no grid of 7x5 inner corners found");
+  EXPECT_EQ(reports[7], "8 'right3': found");
+}
+
 TEST_F(CalibrateTest, UsesTheGivenOffset) {
   CalibrationRequest with_auto = request(4);
   with_auto.disparities = 200;

@@ -83,6 +83,17 @@ TEST(CalibrationYaml, IsReadToTheLastBit) {
   EXPECT_EQ(calibration_yaml(parse_calibration(text)), text);
 }
 
+TEST(CalibrationYaml, HoldsThePatternOfTheGrid) {
+  Calibration made = calibration();
+  made.grid = {4, 11, 15, Pattern::kAsymmetricCircles};
+  const std::string text = calibration_yaml(made);
+  EXPECT_EQ(parse_calibration(text).grid.pattern, Pattern::kAsymmetricCircles);
+  const std::string line = "pattern: asymmetric_circles";
+  EXPECT_EQ(parse_calibration(replaced(text, line, "")).grid.pattern, Pattern::kChessboard);
+  EXPECT_THAT(refusal(replaced(text, line, "pattern: dots")),
+              HasSubstr("grid.pattern: dots: must be one of chessboard, circles, asymmetric_circles"));
+}
+
 TEST(CalibrationYaml, IsReadWithoutHeldOutPairs) {
   Calibration made = calibration();
   made.quality.held_out.reset();

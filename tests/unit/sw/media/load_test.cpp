@@ -325,8 +325,10 @@ TEST_F(LoadTest, LoadsTruthAsGreyWithAPositiveScale) {
   const cv::Mat picture = noise(CV_8UC1);
   const std::string path = file(encoded(".png", picture));
   const Truth truth = load_truth(path, 2.5);
-  const std::vector<std::uint8_t> expected = pixels_of(picture);
-  EXPECT_EQ(truth.levels, std::vector<float>(expected.begin(), expected.end()));
+  const std::vector<std::uint8_t> pixels = pixels_of(picture);
+  std::vector<float> expected(pixels.begin(), pixels.end());
+  std::replace(expected.begin(), expected.end(), 0.0F, Truth::kUnknown);
+  EXPECT_EQ(truth.levels, expected);
   EXPECT_EQ(truth.width, kWidth);
   EXPECT_EQ(truth.scale, 2.5);
   EXPECT_NO_THROW(load_truth(path, 1e-3));
@@ -357,7 +359,7 @@ TEST_F(LoadTest, LoadsTruthOfKittiAndMiddlebury) {
   };
   for (const std::string& bytes : {pfm("-1.0", true), pfm("1", false)}) {
     const Truth truth = load_truth(file(bytes), {});
-    EXPECT_EQ(truth.levels, (std::vector<float>{20, 0, 1.5F, 0}));
+    EXPECT_EQ(truth.levels, (std::vector<float>{20, Truth::kUnknown, 1.5F, Truth::kUnknown}));
     EXPECT_EQ(truth.scale, 1);
     EXPECT_THAT(test::message_of([&] { load_truth(file(bytes), 256); }),
                 HasSubstr("a PFM holds disparities"));

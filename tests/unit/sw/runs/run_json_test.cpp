@@ -21,15 +21,15 @@ RecordedOptions pair_of_pictures() {
   options.source = "preloaded";
   options.fidelity = "cycle";
   options.frames = 4;
-  options.left = InputFile{"/in/left.png", "aa"};
-  options.right = InputFile{"/in/right.png", "bb"};
+  options.left = {InputFile{"/in/left.png", "aa"}};
+  options.right = {InputFile{"/in/right.png", "bb"}};
   return options;
 }
 
 RecordedOptions without_pictures() {
   RecordedOptions options = pair_of_pictures();
-  options.left.reset();
-  options.right.reset();
+  options.left.clear();
+  options.right.clear();
   return options;
 }
 
@@ -70,6 +70,14 @@ TEST(RunJson, IsReadAgainWithEachSourceOfPictures) {
   RecordedOptions options = without_pictures();
   options.sequence = InputFolder{"/in", {{"left_0.png", "aa"}, {"right_0.png", "bb"}}};
   text_of(options);
+  options = pair_of_pictures();
+  options.left.push_back({"/in/left2.png", "cc"});
+  options.right.push_back({"/in/right2.png", "dd"});
+  EXPECT_THAT(text_of(options), HasSubstr(R"(
+  "left": [
+    {"path": "/in/left.png", "sha256": "aa"},
+    {"path": "/in/left2.png", "sha256": "cc"}
+  ],)"));
   options = without_pictures();
   options.video = {{"/in/l.avi", "aa"}, {"/in/r.avi", "bb"}};
   options.video_layout = "two";
@@ -90,9 +98,9 @@ TEST(RunJson, RefusesRelativePathsAndPathsThatAreNotUtf8) {
     EXPECT_EQ(test::message_of([&] { run_json(options); }), message);
   };
   const RecordedOptions pair = pair_of_pictures();
-  expect_refusal("--left 'left.png'" + relative, pair, [](auto& to) { to.left->path = "left.png"; });
+  expect_refusal("--left 'left.png'" + relative, pair, [](auto& to) { to.left[0].path = "left.png"; });
   expect_refusal("--right '/in/\xFF.png'" + not_utf8, pair,
-                 [](auto& to) { to.right->path = "/in/\xFF.png"; });
+                 [](auto& to) { to.right[0].path = "/in/\xFF.png"; });
   expect_refusal("--truth 'truth.png'" + relative, pair, [](auto& to) { to.truth = {"truth.png", ""}; });
   const RecordedOptions none = without_pictures();
   expect_refusal("--sequence 'in'" + relative, none, [](auto& to) { to.sequence = InputFolder{"in", {}}; });
@@ -134,8 +142,8 @@ TEST(RunJsonReader, RefusesOptionsThatNoRunCanHave) {
   EXPECT_EQ(message_of(changed("cycle", "slow")), "fidelity = slow: must be fast or cycle");
   EXPECT_EQ(message_of(changed("\"frames\": 4", "\"frames\": 0")), "frames = 0: must be 1 or more");
   RecordedOptions options = pair_of_pictures();
-  options.right.reset();
-  EXPECT_EQ(message_of(run_json(options)), "left and right: one is without the other");
+  options.right.clear();
+  EXPECT_EQ(message_of(run_json(options)), "left and right: must be as many");
   options = pair_of_pictures();
   options.synthetic = 1;
   EXPECT_EQ(message_of(run_json(options)), "2 sources of pictures: must be one");
