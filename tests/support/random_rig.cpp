@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -65,83 +66,75 @@ Isometry3d pose_of(const GridShape& grid, const Matrix3d& rotation, const Vector
   return Eigen::Translation3d(middle - rotation * half) * Isometry3d(rotation);
 }
 
-// What a camera of a rig sees. Throws std::domain_error unless the lens maps directions one to one over the
-// picture, and a tenth beyond.
-class Eye {
+// What the cameras of a rig see. Throws std::domain_error unless the lenses map directions one to one over
+// the pictures, and a tenth beyond.
+class Views {
  public:
-  Eye(const Rig& rig, const CameraModel& camera)
-      : camera_(camera), widest_(camera.widest()), last_(rig.width - 1, rig.height - 1) {
+  explicit Views(const Rig& rig)
+      : rig_(rig), from_left_(Eigen::Translation3d(rig.translation) * Isometry3d(rig.rotation)) {
     constexpr int kSteps = 20;
     for (int i = 0; i < (kSteps + 1) * (kSteps + 1); ++i) {
       const Vector2d share = Vector2d(i % (kSteps + 1), i / (kSteps + 1)) / kSteps;
-      directions_.push_back(camera.direction(share.cwiseProduct(last_)));
-      if (widest_ < 1.1 * directions_.back().norm()) throw std::domain_error("random rig: the lens folds");
+      const Vector2d pixel = share.cwiseProduct(last_);
+      directions.push_back(rig.left.direction(pixel));
+      if (std::min(widest_[0] / directions.back().norm(), widest_[1] / rig.right.direction(pixel).norm()) <
+          1.1)
+        throw std::domain_error("random rig: the lens folds the picture over");
     }
   }
-
-  const std::vector<Vector2d>& directions() const { return directions_; }  // all over the picture
-
-  // Where it sees a point of its camera coordinates.
-  std::optional<Vector2d> pixel(const Vector3d& point, double border = 0) const {
-    if (!(point.z() > 0) || point.hnormalized().norm() > widest_) return std::nullopt;
-    const Vector2d pixel = camera_.pixel(point.hnormalized());
-    if (std::min(pixel.minCoeff(), (last_ - pixel).minCoeff()) < border) return std::nullopt;
-    return pixel;
-  }
-
-  // Nullopt unless a detector would find all corners of the grid.
-  std::optional<Corners> corners(const GridShape& shape, const Isometry3d& pose) const {
-    constexpr double kBorder = 4;        // pixels
-    constexpr double kNearest = 5;       // pixels between neighbours
-    constexpr double kObliquest = 0.34;  // cosine of 70 degrees between line of sight and normal
-    const auto columns = static_cast<std::size_t>(shape.columns);
-    Corners result;
-    for (const Vector3d& corner : corner_points(shape)) {
-      const Vector3d point = pose * corner;
-      const auto found = pixel(point, kBorder);
-      if (!found || point.normalized().dot(pose.linear().col(2)) < kObliquest) return std::nullopt;
-      const std::size_t number = result.size();
-      if (number % columns != 0 && (*found - result.back()).norm() < kNearest) return std::nullopt;
-      if (number >= columns && (*found - result[number - columns]).norm() < kNearest) return std::nullopt;
-      result.push_back(*found);
-    }
-    return result;
-  }
-
- private:
-  CameraModel camera_;
-  double widest_;
-  Vector2d last_;  // pixel
-  std::vector<Vector2d> directions_;
-};
-
-struct Views {
-  explicit Views(const Rig& rig)
-      : left(rig, rig.left),
-        right(rig, rig.right),
-        from_left(Eigen::Translation3d(rig.translation) * Isometry3d(rig.rotation)) {}
 
   // The directions from the left camera that the right one sees too, if all is at this depth.
   std::vector<Vector2d> shared(double depth) const {
     std::vector<Vector2d> result;
-    for (const Vector2d& direction : left.directions()) {
-      if (right.pixel(from_left * (depth * direction.homogeneous()))) result.push_back(direction);
+    for (const Vector2d& direction : directions) {
+      if (pixel(1, from_left_ * (depth * direction.homogeneous()), 0)) result.push_back(direction);
     }
     return result;
   }
 
   // The corners of a grid that stands at one pose in the left exposure and at another in the right one.
+  // Nullopt unless a detector would find all of them in both pictures.
   std::optional<GridPair> grid(const GridShape& shape, const Isometry3d& in_left,
                                const Isometry3d& in_right) const {
-    const auto left_corners = left.corners(shape, in_left);
-    const auto right_corners = right.corners(shape, from_left * in_right);
-    if (!left_corners || !right_corners) return std::nullopt;
-    return GridPair{*left_corners, *right_corners};
+    GridPair pair;
+    if (!add_corners(0, shape, in_left, pair.left)) return std::nullopt;
+    if (!add_corners(1, shape, from_left_ * in_right, pair.right)) return std::nullopt;
+    return pair;
   }
 
-  Eye left;
-  Eye right;
-  Isometry3d from_left;
+  std::vector<Vector2d> directions;  // all over the left picture
+
+ private:
+  // Where the left (0) or the right (1) camera sees a point of its camera coordinates.
+  std::optional<Vector2d> pixel(std::size_t side, const Vector3d& point, double border) const {
+    if (!(point.z() > 0) || point.hnormalized().norm() > widest_[side]) return std::nullopt;
+    const Vector2d pixel = (side == 0 ? rig_.left : rig_.right).pixel(point.hnormalized());
+    if (std::min(pixel.minCoeff(), (last_ - pixel).minCoeff()) < border) return std::nullopt;
+    return pixel;
+  }
+
+  bool add_corners(std::size_t side, const GridShape& shape, const Isometry3d& pose, Corners& found) const {
+    constexpr double kBorder = 4;        // pixels
+    constexpr double kNearest = 5;       // pixels between neighbours
+    constexpr double kObliquest = 0.34;  // cosine of 70 degrees between line of sight and normal
+    const auto columns = static_cast<std::size_t>(shape.columns);
+    for (const Vector3d& corner : corner_points(shape)) {
+      const Vector3d point = pose * corner;
+      const auto at = pixel(side, point, kBorder);
+      const std::size_t number = found.size();
+      if (!at || point.normalized().dot(pose.linear().col(2)) < kObliquest ||
+          (number % columns != 0 && (*at - found.back()).norm() < kNearest) ||
+          (number >= columns && (*at - found[number - columns]).norm() < kNearest))
+        return false;
+      found.push_back(*at);
+    }
+    return true;
+  }
+
+  Rig rig_;
+  Isometry3d from_left_;
+  Vector2d last_{rig_.width - 1, rig_.height - 1};  // pixel
+  std::array<double, 2> widest_{rig_.left.widest(), rig_.right.widest()};
 };
 
 // How a rig is drawn. Lengths are shares of the baseline, angles in degrees.
@@ -265,7 +258,7 @@ std::optional<FaultyRig> try_rig(SplitMix& random, double angle, const Arrangeme
   const double focal = rig.left.matrix(0, 0);
   const double near = focal * baseline / (random.between(0.06, 0.3) * rig.width);
   for (const double depth : {near, near * its.farthest}) {
-    if (its.is_sound && 2 * views.shared(depth).size() < views.left.directions().size()) return std::nullopt;
+    if (its.is_sound && 2 * views.shared(depth).size() < views.directions.size()) return std::nullopt;
   }
   grid.columns = whole(random, 5, 11);
   grid.rows = whole(random, 4, 8);
