@@ -79,23 +79,23 @@ constexpr const char* kTurned =
     "refused: the pictures of one camera are upside down against those of the other";
 
 const Mistake kMistakes[] = {
-    {"None", Fault::kNone, 3, "good: "},
+    {"None", Fault::kNone, 2, "good: "},
     {"Moved", Fault::kMoved, 1, "(refused: the two pictures of a pair do not show|usable: the rig fits)"},
     {"MovedLittle", Fault::kMovedLittle, 2, "(refused|usable): "},
     {"SomeMoved", Fault::kSomeMoved, 5, "usable: .* pairs do not fit"},
-    {"Late", Fault::kLate, 1, "refused: the pictures are paired wrongly"},
+    {"Late", Fault::kLate, 2, "refused: the pictures are paired wrongly"},
     {"Reversed", Fault::kReversed, 1, "refused: the pictures of one camera are in reverse order"},
     {"OneLostInEach", Fault::kOneLostInEach, 2, "usable: .* pairs do not fit"},
     {"OneMiscounted", Fault::kOneMiscounted, 2, "usable: 1 of .* pairs do not fit"},
     {"UpsideDown", Fault::kUpsideDown, 1, kTurned},
     {"OppositeQuarters", Fault::kOppositeQuarters, 1, kTurned},
     {"Mirrored", Fault::kMirrored, 1, "refused: the pictures of one camera are mirrored"},
-    {"Exchanged", Fault::kExchanged, 3, "refused: the cameras are swapped"},
+    {"Exchanged", Fault::kExchanged, 1, "refused: the cameras are swapped"},
     {"Rolled", Fault::kRolled, 1, "refused: one camera is turned by (8.|9.) degrees"},
-    {"Vertical", Fault::kVertical, 3, "refused: the right camera is .* mm (above|below) the left one"},
-    {"TurnedFar", Fault::kTurnedFar, 3, "(good|usable|refused: the lenses)"},  // refused for its disparities
-    {"Frontal", Fault::kFrontal, 2, "refused: the grid is tilted by [0-2]\\.. degrees at most"},
-    {"HardlyTilted", Fault::kHardlyTilted, 3, "(refused|usable): "},
+    {"Vertical", Fault::kVertical, 1, "refused: the right camera is .* mm (above|below) the left one"},
+    {"TurnedFar", Fault::kTurnedFar, 1, "(good|usable|refused: the lenses)"},  // refused for its disparities
+    {"Frontal", Fault::kFrontal, 1, "refused: the grid is tilted by [0-2]\\.. degrees at most"},
+    {"HardlyTilted", Fault::kHardlyTilted, 2, "(refused|usable): "},
 };
 
 // Whether the answer is the expected one; whether exactly the bad pairs are left out, and the others tell the
