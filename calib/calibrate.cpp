@@ -123,7 +123,7 @@ RowError found_again(const CalibrationRequest& request, const CalibrationResult&
 // kMostGroups pairs, each calibration leaves out several. Returns nullopt if too few pairs would be left, or
 // if the rest determines no calibration.
 std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit& fit,
-                                const std::vector<GridPair>& corners, Lens lens) try {
+                                const std::vector<GridPair>& corners) try {
   constexpr std::size_t kMostGroups = 20;
   std::vector<std::size_t> pairs;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -137,7 +137,8 @@ std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit&
     auto used = fit.used;
     for (std::size_t i = group; i < pairs.size(); i += groups)
       used[pairs[i]].assign(used[pairs[i]].size(), false);
-    const Rig rig = solve_rig(request.grid, corners, used, fit.rig, lens);
+    const Rig rig = solve_rig(request.grid, corners, used, fit.rig, fit.lens,
+                              fit.evidence.lenses_are_kept ? Lenses::kKept : Lenses::kFitted);
     const Rectification rectification = rectify(rig);
     for (std::size_t i = group; i < pairs.size(); i += groups) {
       const std::size_t pair = pairs[i];
@@ -228,7 +229,7 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
   made.certainty = determined.certainty;
   add_depths(made, determined.covariance);
   quality.found_again = found_again(request, result);
-  quality.held_out = held_out(request, fit, views.pairs, result.lens);
+  quality.held_out = held_out(request, fit, views.pairs);
   return result;
 }
 

@@ -63,7 +63,8 @@ struct MatchedRows {
 // are searched for in the right one, 0..disparities-1 columns to the left and up to 8 rows above or below.
 // Only reliable matches count. A point of a pattern that repeats does not count: it looks like another place
 // of the left picture, or fits two places of the right one. If the tables belong to the cameras, the mean
-// error is below one pixel. The function takes about 50 ms at 640x480 with 320 disparities. Throws std::invalid_argument if the pictures differ in size.
+// error is below one pixel. The function takes about 50 ms at 640x480 with 320 disparities. Throws
+// std::invalid_argument if the pictures differ in size.
 MatchedRows matched_rows(const kernels::GrayImage& left, const kernels::GrayImage& right, int disparities);
 
 }  // namespace stereotlm::calib

@@ -22,24 +22,29 @@ std::string worst_pairs(const GridViews& views, const RigFit& fit) {
   std::string text;
   for (std::size_t i = 0; i < std::min(kMost, misfits.size()); ++i) {
     text +=
-        fmt::format("{}{} {:.2g} px", i == 0 ? "" : ", ", views.names[misfits[i].second], misfits[i].first);
+        fmt::format("{}{} {:.2f} px", i == 0 ? "" : ", ", views.names[misfits[i].second], misfits[i].first);
   }
   return text;
 }
 
 // The rig does not explain what its cameras see: says what was measured, and why if that is found.
 [[noreturn]] void refuse_misfit(const GridViews& views, const RigFit& fit) {
-  const std::string measured = fmt::format("each camera alone fits to {:.2f} px, the rig to {:.2g} px",
-                                           fit.evidence.alone_rms_px, fit.evidence.rig_rms_px);
+  const Evidence& evidence = fit.evidence;
+  const std::string alone = fmt::format("each camera alone fits to {:.2f} px", evidence.alone_rms_px);
+  const std::string measured =
+      evidence.disagreement_mm > 0
+          ? fmt::format("{}, but the pairs disagree by {:.0f} mm where the right camera stands", alone,
+                        evidence.disagreement_mm)
+          : fmt::format("{}, the rig to {:.2f} px; worst {}", alone, evidence.rig_rms_px,
+                        worst_pairs(views, fit));
   if (const auto mistake = find_misarrangement(views, fit.rig)) {
-    refuse(fmt::format("{}: {}, and to {:.2f} px if that is undone: {}", mistake->cause, measured,
+    refuse(fmt::format("{}: {}; if that is undone, the rig fits to {:.2f} px: {}", mistake->cause, measured,
                        mistake->rig_rms_px, mistake->cure));
   }
   refuse(
-      fmt::format("the two pictures of a pair do not show the grid at the same place: {}; worst {}: take "
-                  "both pictures of a "
-                  "pair at the same time, of a grid that stands still, with two cameras on one bar",
-                  measured, worst_pairs(views, fit)));
+      fmt::format("the two pictures of a pair do not show the grid at the same place: {}: take both pictures "
+                  "of a pair at the same time, of a grid that stands still, with two cameras on one bar",
+                  measured));
 }
 
 void check_places(const Rig& rig) {
@@ -80,13 +85,13 @@ void check_places(const Rig& rig) {
 }
 
 // What pictures without tilt cannot tell: their sigmas are small, and wrong.
-void check_tilt(const Certainty& certainty) {
+void check_tilt(const Evidence& evidence) {
   constexpr double kLeast = 3;  // degrees
-  if (certainty.tilt_deg >= kLeast) return;
+  if (evidence.tilt_deg >= kLeast) return;
   refuse(
       fmt::format("the grid is tilted by {:.1f} degrees at most, so that the focal lengths are not "
                   "determined: take pairs with the grid tilted by 20 to 40 degrees, near and far",
-                  certainty.tilt_deg));
+                  evidence.tilt_deg));
 }
 
 void check_focal_length(const Rig& rig, const Certainty& certainty) {
@@ -119,12 +124,12 @@ DeterminedRig determine_rig(const GridViews& views) {
   RigFit& fit = result.fit;
   for (const Lens lens : {Lens::kFull, Lens::kWithoutK3}) {
     fit = fit_rig(views.shape, views.width, views.height, views.pairs, lens);
-    if (lenses_are_determined(fit.rig)) break;
+    if (fit.evidence.refutes() || lenses_are_determined(fit.rig)) break;
   }
+  check_tilt(fit.evidence);
+  if (fit.evidence.refutes()) refuse_misfit(views, fit);
   result.covariance = covariance(fit, views.shape, views.pairs);
   result.certainty = certainty_of(fit, result.covariance);
-  check_tilt(result.certainty);
-  if (fit.evidence.refutes()) refuse_misfit(views, fit);
   check_focal_length(fit.rig, result.certainty);
   check_places(fit.rig);
   if (!lenses_are_determined(fit.rig))

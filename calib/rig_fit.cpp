@@ -254,7 +254,7 @@ bool is_bent(const CameraModel& camera, const SingleFit& alone) {
   const Eigen::Matrix3d change = camera.matrix - to_eigen<Eigen::Matrix3d>(alone.matrix);
   const double changes[] = {change(0, 0), change(1, 1), change(0, 2), change(1, 2)};
   for (int i = 0; i < 4; ++i) {
-    if (std::abs(changes[i]) > 3 * alone.sigmas.at<double>(i)) return true;
+    if (!(std::abs(changes[i]) <= 3 * alone.sigmas.at<double>(i))) return true;
   }
   return false;
 }
@@ -273,18 +273,23 @@ SingleFits fit_cameras(const Observations& seen, const Rig& guess, Lens lens) {
           fit_camera(seen, seen.right, size, lens, &guess.right)};
 }
 
+Evidence evidence_of(const SingleFits& alone) {
+  Evidence evidence;
+  evidence.alone_rms_px = std::max(alone.left.rms_px, alone.right.rms_px);
+  for (std::size_t view = 0; view < alone.left.rotations.size(); ++view) {
+    const double cosine = to_pose(alone.left.rotations[view], alone.left.translations[view]).linear()(2, 2);
+    evidence.tilt_deg = std::max(evidence.tilt_deg, kDegrees * std::acos(std::min(1.0, std::abs(cosine))));
+  }
+  return evidence;
+}
+
 // The rig that has the lenses of the single fits.
 RigFit fit_kept(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
                 const SingleFits& alone, cv::Size size, Lens lens) {
   RigFit fit = fit_once(shape, pairs, used, guess_of(alone.left, alone.right, size), lens, Lenses::kKept);
   add_figures(fit);
-  fit.evidence.alone_rms_px = std::max(alone.left.rms_px, alone.right.rms_px);
+  fit.evidence = evidence_of(alone);
   fit.evidence.rig_rms_px = fit.stereo_rms_px;
-  for (std::size_t view = 0; view < alone.left.rotations.size(); ++view) {
-    const double cosine = to_pose(alone.left.rotations[view], alone.left.translations[view]).linear()(2, 2);
-    fit.evidence.tilt_deg =
-        std::max(fit.evidence.tilt_deg, kDegrees * std::acos(std::min(1.0, std::abs(cosine))));
-  }
   return fit;
 }
 
@@ -414,9 +419,16 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   const Observations all = observations(shape, pairs, used);
   const SingleFit left = fit_camera(all, all.left, size, lens);
   const SingleFit right = fit_camera(all, all.right, size, lens);
-  if (const Used agree = pairs_that_agree(places_of(left, right), corners); !has_few_pairs(agree))
-    used = agree;
+  const Places places = places_of(left, right);
+  if (const Used agree = pairs_that_agree(places, corners); !has_few_pairs(agree)) used = agree;
   const Rig guess = guess_of(left, right, size);
+  if (!nearly_agree(places)) {
+    RigFit fit;
+    fit.rig = guess;
+    fit.evidence = evidence_of({left, right});
+    fit.evidence.disagreement_mm = median(places.errors);
+    return fit;
+  }
   RigFit fit = fit_once(shape, pairs, used, guess, lens);
   bool has_few = false;
   for (int round = 1; round < kMostRounds; ++round) {

@@ -40,9 +40,13 @@ struct Evidence {
   bool lenses_are_kept = false;  // whether the rig has these lenses, because a joint fit would bend them
   bool has_few_pairs = false;    // whether fewer than kFewestPairs fit, so that no corner was left out
 
+  // The median distance between the places of the right camera by each pair and by their median, mm, if it is
+  // so large that no rig was fitted. Else 0.
+  double disagreement_mm = 0;
+
   double ratio() const { return rig_rms_px / alone_rms_px; }
   // Whether the rig does not explain what its cameras see.
-  bool refutes() const { return has_few_pairs || (ratio() >= 3 && rig_rms_px >= 0.2); }
+  bool refutes() const { return has_few_pairs || disagreement_mm > 0 || (ratio() >= 3 && rig_rms_px >= 0.2); }
 };
 
 // The rig that explains the observed corners best (least squares).
@@ -67,9 +71,10 @@ inline constexpr std::size_t kFewestPairs = 3;
 // than half of its corners, or if the rig fits to it 1.8 times worse, compared with each camera alone, than to
 // the median pair. The fit is repeated until it uses the same corners again. Then each camera is fitted by
 // itself to these corners. The result has the lenses of these fits, if the rig fits 1.5 times worse than its
-// cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma; also, if the pairs
-// do not nearly agree where the cameras stand. The caller looks at RigFit::evidence. Throws
-// std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if OpenCV finds no rig.
+// cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma. If the pairs do
+// not nearly agree where the cameras stand, only the lenses of single fits are the result. The caller looks at
+// RigFit::evidence. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if
+// OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 

@@ -30,8 +30,8 @@ struct RectificationTable {
   std::vector<std::uint32_t> entries;  // width * height
 };
 
-// Returns a table whose entry (x, y) is pixel (x + offset, y), or not valid if that is outside. Without offset
-// every pixel is its own source, as on a board without calibration.
+// Returns a table whose entry (x, y) is pixel (x + offset, y), or not valid if that is outside. Without
+// offset every pixel is its own source, as on a board without calibration.
 RectificationTable identity_table(int width, int height, int offset = 0);
 
 // Whether all valid entries point inside an image of that size.

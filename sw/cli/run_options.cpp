@@ -89,6 +89,10 @@ void load_truth(const RunOptions& options, std::uint64_t frame, runs::OpenedSour
                 runs::RunInput& input, process::Problems& problems) {
   if (!options.truth.file.is_given()) return;
   const runs::NamedFile file = {"--truth", options.truth.file.text()};
+  if (const auto sent = options.truth.sent.find(runs::kKeptTruth); sent != options.truth.sent.end()) {
+    input.truth = runs::open_truth(file, options.truth.scale(), source, frame, problems, &sent->second);
+    return;  // the file is named once it is in the result folder
+  }
   source.files.push_back(file);
   input.truth = runs::open_truth(file, options.truth.scale(), source, frame, problems);
   if (input.truth)
@@ -401,6 +405,8 @@ runs::RunInput RunOptions::load() const {
     }
     if (has_arrays() && input.folder && !input.timing_only)
       named.sequence = runs::keep_pictures(*opened.pairs, *input.folder);
+    if (const auto sent = truth.sent.find(runs::kKeptTruth); sent != truth.sent.end() && input.folder)
+      input.described.truth = runs::keep_file(runs::kKeptTruth, sent->second, *input.folder);
     describe(*this, input);
   });
   trace.check_window(input.board, input.frames, problems);

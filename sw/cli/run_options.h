@@ -106,6 +106,7 @@ struct TruthOptions {
 
   Options* of;
   std::string picture;  // whose truth it is, for the help
+  process::FileContents sent = process::sent_files({runs::kKeptTruth});
   Option file = Option(of, "--truth", "F",
                        "Ground truth of " + picture + ": grey of 8 or 16 bits, 0 = unknown, or PFM");
   Option scale_text = Option(

@@ -48,10 +48,10 @@ Picture decoded(std::string_view bytes) {
                  "a picture must be PNG, JPEG, BMP, PGM, PPM, PAM, TIFF, WebP, JPEG 2000 or Sun raster");
 }
 
-// What `decode` makes of the bytes of a file.
+// What `decode` makes of the bytes of a file, which are `content` if that is there.
 template <typename Decode>
-auto read(const std::string& path, const Decode& decode) {
-  const std::string bytes = files::read_whole_file(path, kMostBytes);
+auto read(const std::string& path, const Decode& decode, const std::string* content = nullptr) {
+  const std::string bytes = content != nullptr ? *content : files::read_whole_file(path, kMostBytes);
   try {
     return decode(bytes);
   } catch (const std::runtime_error& error) {
@@ -88,27 +88,29 @@ LoadedGray load_gray(const std::string& path) {
   return {to_gray_image(std::move(picture)), is_colour, notes};
 }
 
-Truth load_truth(const std::string& path, std::optional<double> scale) {
+Truth load_truth(const std::string& path, std::optional<double> scale, const std::string* content) {
   if (scale && (!std::isfinite(*scale) || *scale <= 0))
     throw std::invalid_argument("truth scale = " + std::to_string(*scale) + ": must be positive and finite");
-  return read(path, [scale](const std::string& bytes) {
-    Truth truth;
-    if (bytes.size() > 2 && begins(bytes, "Pf") && std::isspace(static_cast<unsigned char>(bytes[2])) != 0) {
-      if (scale && *scale != 1)
-        refuse_picture(fmt::format("scale {:g}", *scale), "a PFM holds disparities: its scale is 1");
-      truth = decode_pfm(bytes);
-    } else if (begins(bytes, kPng) && is_deep_png(bytes)) {
-      if (!scale)
-        refuse_picture("16-bit grey", "its scale must be given: --truth-scale 256 for one of KITTI");
-      truth = decode_deep_png(bytes);
-    } else {
-      Picture picture = decoded(bytes);
-      if (picture.channels != 1) refuse_picture("8-bit colour", "ground truth must be grey");
-      truth = {to_gray_image(std::move(picture)), 1};
-    }
-    truth.scale = scale.value_or(1);
-    return truth;
-  });
+  return read(
+      path,
+      [scale](const std::string& bytes) {
+        Truth truth;
+        if (bytes.size() > 2 && begins(bytes, "Pf") &&
+            std::isspace(static_cast<unsigned char>(bytes[2])) != 0) {
+          truth = decode_pfm(bytes);
+        } else if (begins(bytes, kPng) && is_deep_png(bytes)) {
+          if (!scale)
+            refuse_picture("16-bit grey", "its scale must be given: --truth-scale 256 for one of KITTI");
+          truth = decode_deep_png(bytes);
+        } else {
+          Picture picture = decoded(bytes);
+          if (picture.channels != 1) refuse_picture("8-bit colour", "ground truth must be grey");
+          truth = {to_gray_image(std::move(picture)), 1};
+        }
+        truth.scale = scale.value_or(1);
+        return truth;
+      },
+      content);
 }
 
 const Decoders& decoders() {

@@ -86,10 +86,10 @@ struct LoadedGray {
 LoadedGray load_gray(const std::string& path);
 
 // Ground truth: a grey picture as above, a grey PNG of 16 bits, or a PFM of one channel, which holds
-// disparities (infinite or not above 0: unknown). Without `scale` it is 1, but must be given for 16 bits and
-// must not for a PFM. Throws as load_gray() does, and std::invalid_argument if `scale` is not positive and
-// finite.
-Truth load_truth(const std::string& path, std::optional<double> scale);
+// disparities (infinite or not above 0: unknown). Without `scale` it is 1, but must be given for 16 bits.
+// `content`: of the file, which is then not read; null: it is read. Throws as load_gray() does, and
+// std::invalid_argument if `scale` is not positive and finite.
+Truth load_truth(const std::string& path, std::optional<double> scale, const std::string* content = nullptr);
 
 // Reads the frames of one video file, in grey: decoded by FFmpeg in software, without the rotation that
 // metadata may ask for, and converted with OpenCV's BGR2GRAY. One frame is in memory at a time.

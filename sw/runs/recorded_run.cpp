@@ -17,6 +17,7 @@
 #include "sw/media/load.h"
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
+#include "sw/runs/run_results.h"
 #include "sw/runs/sources/calibration_input.h"
 #include "sw/runs/sources/open_source.h"
 #include "sw/stats/accuracy.h"
@@ -148,6 +149,8 @@ std::optional<RecordedRun> read_recorded_run(const std::string& argument, const 
   read("run.json", run.run_json, [&] {
     run.options = parse_run_json(run.run_json);
     const fs::path kept = fs::absolute(folder) / "pictures";  // of a folder that may have been moved
+    const fs::path truth = fs::absolute(folder) / kKeptTruth;
+    if (run.options.truth && fs::exists(truth)) run.options.truth->path = truth.string();
     if (run.options.sequence && fs::is_directory(kept)) run.options.sequence->path = kept.string();
     const std::size_t videos = run.options.video.size();
     if (videos == 0 || videos == video_files(run.options.video_layout)) return;

@@ -109,12 +109,18 @@ files::OutputContent result_content(std::vector<files::NamedFile> inputs) {
                    "depth.@(ply|png)",
                    "disparity.@(pfm|png)",
                    "@(depth|disparity)_color.png",
+                   kKeptTruth,
                    "frames/",
                    "frames/[0-9][0-9][0-9][0-9][0-9]+([0-9]).png",
                    "pictures/",
                    "pictures/@(left|right)_[0-9][0-9][0-9][0-9][0-9]+([0-9]).png"};
   content.inputs = std::move(inputs);
   return content;
+}
+
+InputFile keep_file(const std::string& name, const std::string& content, files::OutputFolder& folder) {
+  folder.add(name, content);
+  return {(folder.path() / name).string(), files::sha256_hex(content.data(), content.size())};
 }
 
 InputFolder keep_pictures(PairSource& pairs, files::OutputFolder& folder) {

@@ -17,6 +17,12 @@ std::string frame_file_name(std::uint64_t frame);
 // The folder of `run --out`: one result and nothing else. Its mark is run.json. `inputs`: see OutputContent.
 files::OutputContent result_content(std::vector<files::NamedFile> inputs = {});
 
+// The truth that a client has sent: the name of its array, and of its file in the result folder.
+inline constexpr const char* kKeptTruth = "truth.pfm";
+
+// Adds a file that a client has sent to the result folder.
+InputFile keep_file(const std::string& name, const std::string& content, files::OutputFolder& folder);
+
 // Adds pictures that are in no files to the result folder, and returns them as a sequence there.
 InputFolder keep_pictures(PairSource& pairs, files::OutputFolder& folder);
 

@@ -131,6 +131,17 @@ def _pictures(left, right, options):
     return arrays, options
 
 
+def _truth(truth, scale):
+    """The bytes of a PFM that holds an array of levels, (rows, columns)."""
+    levels = numpy.asarray(truth)
+    if levels.ndim != 2 or levels.dtype.kind not in "fiu":
+        raise TypeError(f"truth: {levels.dtype} {levels.shape}: must be an array of numbers, (rows, columns)")
+    if levels.dtype == numpy.uint16 and scale is None:
+        raise ValueError("truth: uint16: truth_scale must be given, 256 for one of KITTI")
+    head = b"Pf\n%d %d\n-1\n" % levels.shape[::-1]
+    return numpy.frombuffer(head + levels[::-1].astype("<f4").tobytes(), numpy.uint8)
+
+
 class _Section:
     """The keys of a board below one path, such as board.matcher."""
 
@@ -310,11 +321,17 @@ class Board:
         `stereotlm run`: frames=100, synthetic=1, fidelity="cycle", truth="truth.png", out="folder". `out`
         keeps the results for `stereotlm report` and `diff`, of arrays with their pictures.
 
+        `truth`: the path of a file, or an array of disparities, (rows, columns); with truth_scale of as many
+        levels per disparity. NaN, infinite, and not above 0: unknown.
+
         By default the whole computer with its cameras runs until it has delivered as many frames as there are
         pairs. source="preloaded" is the core alone.
         """
         board = copy.copy(self)  # whatever another thread changes
         arrays, options = _pictures(left, right, copy.deepcopy(options))
+        if not isinstance(options.get("truth"), (str, bytes, os.PathLike, type(None))):
+            arrays["truth.pfm"] = _truth(options["truth"], options.get("truth_scale"))
+            options["truth"] = "the array"
         sets, calibration = (options.pop(name, None) for name in ("set", "calibration"))
         if sets is not None or calibration is not None:
             board = board.changed([] if sets is None else sets, calibration)

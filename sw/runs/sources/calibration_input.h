@@ -65,7 +65,8 @@ platform::Tables tables_of(const platform::BoardConfig& board,
                            const std::optional<CalibrationInput>& calibration, int disparity_offset = 0);
 
 // The columns by which the tables move the left picture, if they do nothing else: its ground truth moves with
-// it. 0 if the tables rectify; truth is then that of the rectified picture. Both arguments as for tables_of().
+// it. 0 if the tables rectify; truth is then that of the rectified picture. Both arguments as for
+// tables_of().
 int truth_offset(const platform::BoardConfig& board, const std::optional<CalibrationInput>& calibration,
                  int disparity_offset);
 

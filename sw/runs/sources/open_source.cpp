@@ -354,10 +354,10 @@ OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* b
 
 std::optional<media::Truth> open_truth(const NamedFile& file, std::optional<double> scale,
                                        const OpenedSource& source, std::uint64_t frame,
-                                       process::Problems& problems) {
+                                       process::Problems& problems, const std::string* content) {
   std::optional<media::Truth> loaded;
   problems.attempt(file.option + ' ', [&] {
-    const media::Truth truth = media::load_truth(file.path, scale);
+    const media::Truth truth = media::load_truth(file.path, scale, content);
     const media::Size size = {truth.width, truth.height};
     if (!source.fit.name.empty() && !source.sizes.empty())
       check_same_size(file.path, size, "the left picture", source.sizes[frame % source.sizes.size()]);

@@ -95,13 +95,14 @@ OpenedSource open_source(InputPictures& pictures, const platform::BoardConfig* b
                          process::Problems& problems, bool has_calibration = false);
 
 // Takes the pairs of a client (process/client.h) as the source: its arrays `left` and `right`. The board must
-// be known. Throws std::runtime_error if one is missing, or if their shapes do not fit each other or the board.
+// be known. Throws std::runtime_error if one is missing, or if their shapes do not fit each other or the
+// board.
 void open_arrays(OpenedSource& opened);
 
 // Loads the ground truth of the pair that a frame shows, and checks its size. Reports problems and returns
-// nullopt if there are any.
+// nullopt if there are any. `content`: as for media::load_truth().
 std::optional<media::Truth> open_truth(const NamedFile& file, std::optional<double> scale,
                                        const OpenedSource& source, std::uint64_t frame,
-                                       process::Problems& problems);
+                                       process::Problems& problems, const std::string* content = nullptr);
 
 }  // namespace stereotlm::runs

@@ -2,8 +2,12 @@
 
 import hashlib
 import struct
+import zlib
+
+import numpy
 
 import program
+from pictures import noise, pgm, read_pfm, read_png_16
 from program import PRELOADED, ProgramTest, made_rig, run
 
 DEPTHS = ["--near-mm", "500", "--far-mm", "3000"]
@@ -15,6 +19,20 @@ width=64
 height=32
 ndisp=20
 """
+
+
+def pfm(disparities):
+    return b"Pf\n%d %d\n-1\n" % disparities.shape[::-1] + disparities[::-1].astype("<f4").tobytes()
+
+
+def png_16(levels):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    height, width = levels.shape
+    rows = b"".join(b"\0" + row.tobytes() for row in levels)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 class ImportTest(ProgramTest):
@@ -56,6 +74,54 @@ class ImportTest(ProgramTest):
         result = self.folder / "result"
         self.succeeds(run(*scene, "--calibration", self.folder / "mine.yaml", "--out", result))
         self.assertTrue((result / "depth.png").exists())
+
+    def test_truth_of_middlebury_and_kitti_gives_quality_and_depths(self):
+        width, height, offset = 160, 48, 4
+        texture = numpy.frombuffer(noise(width + 20, height, 1), numpy.uint8).reshape(height, width + 20)
+        x = numpy.arange(width)
+        disparity = numpy.where(x < 80, 9, 14)
+        pair = []
+        for side, columns in (("left", x + 20 - disparity), ("right", x + 20)):
+            picture = pgm(width, height, texture[:, columns].tobytes())
+            pair += [f"--{side}", self.file(f"{side}.pgm", picture)]
+        truth = disparity + numpy.zeros((height, 1))
+        truth[:10] += 1.5  # wrong
+        truth[:, :30] = numpy.inf
+        size = f"width={width}\nheight={height}\n"
+        middlebury = MIDDLEBURY.replace("width=64\nheight=32\n", size)
+        kitti = "P0: 64 0 31 0 0 64 15 0 0 0 1 0\nP1: 64 0 31 -6.4 0 64 15 0 0 0 1 0\n"  # 0.1 m
+        levels = numpy.where(numpy.isfinite(truth), truth * 256, 0).astype(">u2")
+        for calib, words, of_run, doffs in (
+            (middlebury, [], ["--truth", self.file("t.pfm", pfm(truth))], 3),
+            (kitti, ["--size", f"{width}x{height}", "--cameras", "P0,P1"],
+             ["--truth", self.file("t.png", png_16(levels)), "--truth-scale", 256], 0),
+        ):
+            self.succeeds(self.imported(self.file("calib.txt", calib), *words, "--disparity-offset", offset))
+            board = program.sets(f"image={{width: {width}, height: {height}}}", "matcher.disparities=16")
+            self.succeeds(run("run", "fpl2003", *PRELOADED, *board, *pair, *of_run, "--out", self.out,
+                              "--calibration", self.folder / "mine.yaml"))
+            found = numpy.array(read_pfm(self.out / "disparity.pfm")[2])
+            # The quality, as numpy has it.
+            known = numpy.full(truth.shape, numpy.inf)
+            known[:, :-offset] = truth[:, offset:] - offset
+            rows, columns = numpy.nonzero(x - known >= 0)
+            seen = numpy.floor(x - known + 0.5)[rows, columns].astype(int)
+            nearest = numpy.full(truth.shape, -numpy.inf)
+            numpy.maximum.at(nearest, (rows, seen), known[rows, columns])
+            visible = nearest[rows, seen] - known[rows, columns] <= 1
+            errors = abs(found[rows, columns] - known[rows, columns])[visible]
+            answered = numpy.isfinite(errors)
+            accuracy = self.stats()["accuracy"]
+            for key, share in (("answered_percent", answered.mean()),
+                               ("bad_1_percent", (errors[answered] > 1).mean()),
+                               ("bad_2_percent", (errors[answered] > 2).mean())):
+                self.assertAlmostEqual(accuracy[key], 100 * share, 2)
+            self.assertGreater(accuracy["bad_1_percent"], 10)
+            depths = numpy.array(read_png_16(self.out / "depth.png"))
+            expected = numpy.where(numpy.isfinite(found), 6400 / (found + offset + doffs), 0)
+            self.assertLess(abs(depths - expected).max(), 0.51)
+            right = (found + offset == numpy.roll(disparity, -offset)) & (depths > 0)
+            self.assertGreater(right.sum(), 0.6 * width * height)
 
     def test_a_run_warns_of_tables_that_are_mostly_empty(self):
         self.succeeds(self.imported(self.file("calib.txt", MIDDLEBURY), "--disparity-offset", "20"))

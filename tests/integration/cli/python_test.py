@@ -25,6 +25,7 @@ import numpy
 import pandas
 
 import program
+from pictures import pgm
 from program import HEIGHT, PRELOADED, PROGRAM, SMALL, WIDTH, ProgramTest, run, sets
 
 SOURCES = pathlib.Path(__file__).resolve().parents[3]
@@ -288,6 +289,28 @@ class Runs(PythonTest):
             self.succeeds(run("diff", out, self.out))
             with self.unchanged(out):
                 self.refused(run("run", "fpl2003", *SMALL, "--sequence", out / "pictures", "--out", out))
+
+    def test_truth_is_an_array_or_a_file(self):
+        board = small_board()
+        levels = numpy.tile(numpy.arange(WIDTH), (HEIGHT, 1)).astype(numpy.uint8)
+        file = self.file("truth.pgm", pgm(WIDTH, HEIGHT, levels.tobytes()))
+        unknown = numpy.where(levels, levels, numpy.nan) / 3
+
+        def accuracy(truth, **options):
+            return board.run(*self.arrays, truth=truth, **ALONE, **options).statistics["accuracy"]
+
+        expected = accuracy(file, truth_scale=3)
+        for truth in (levels, levels.astype(numpy.uint16), levels.astype(float), levels.tolist()):
+            self.assertEqual(accuracy(truth, truth_scale=3), expected)
+        for truth in (levels.astype(float), levels.astype(int)):
+            self.assertEqual(accuracy(truth), accuracy(file))
+        infinite = numpy.nan_to_num(unknown, nan=numpy.inf)
+        self.assertEqual(accuracy(unknown, out=self.out), accuracy(infinite))
+        self.succeeds(run("diff", self.out, self.out))  # repeats the run with the truth that it has kept
+        self.assertIn("must be as large as", str(self.refusal(lambda: accuracy(levels[1:]))))
+        for error, truth in ((ValueError, levels.astype("u2")), (TypeError, levels[0]), (TypeError, ["a"])):
+            with self.assertRaises(error):
+                accuracy(truth)
 
     def test_a_stack_is_a_sequence(self):
         pairs = [numpy.stack([numpy.roll(side, shift, 1) for shift in range(3)]) for side in self.arrays]
