@@ -82,7 +82,7 @@ const Mistake kMistakes[] = {
     {"None", Fault::kNone, 2, "good: "},
     {"Moved", Fault::kMoved, 1, "(refused: the two pictures of a pair do not show|usable: the rig fits)"},
     {"MovedLittle", Fault::kMovedLittle, 2, "(refused|usable): "},
-    {"SomeMoved", Fault::kSomeMoved, 5, "usable: .* pairs do not fit"},
+    {"SomeMoved", Fault::kSomeMoved, 2, "usable: .* pairs do not fit"},
     {"Late", Fault::kLate, 2, "refused: the pictures are paired wrongly"},
     {"Reversed", Fault::kReversed, 1, "refused: the pictures of one camera are in reverse order"},
     {"OneLostInEach", Fault::kOneLostInEach, 2, "usable: .* pairs do not fit"},
