@@ -27,6 +27,8 @@ Calibration calibration() {
   made.disparity_offset = -7;
   made.quality = {0.1,         0.2, 1 / 3.0, {0.3, 0.4, 500}, {0.5, 0.6, 400}, HeldOut{0.7, {0.8, 0.9, 500}},
                   {1.25, 99.5}};
+  made.certainty =
+      Certainty{0.1, 0.2, true, 1 / 7.0, 0.4, 0.5, 0.6, 33.3, {{500, 1.5, 2.5}, {900, 3, 1 / 9.0}}};
   made.sources = {{"a: b.jpg", "right \"1\".jpg", 54}, {"left2.jpg", "right2.jpg", 0}};
   made.left_lut_sha256 = std::string(64, 'a');
   made.right_lut_sha256 = std::string(64, '0');
@@ -71,6 +73,8 @@ TEST(CalibrationYaml, HoldsTheKeysOfOpenCVsSample) {
   EXPECT_EQ(static_cast<double>(file["grid"]["square_mm"]), 25.4);
   EXPECT_EQ(static_cast<std::string>(file["left_lut_sha256"]), made.left_lut_sha256);
   EXPECT_EQ(static_cast<double>(file["quality"]["row_error"]["max_px"]), 0.4);
+  EXPECT_EQ(static_cast<double>(file["certainty"]["focal_sigma_px"]), 1 / 7.0);
+  EXPECT_EQ(static_cast<double>(file["certainty"]["depth_errors"][1]["calibration_mm"]), 1 / 9.0);
   EXPECT_EQ(static_cast<std::string>(file["sources"][0]["right"]), "right \"1\".jpg");
 }
 
