@@ -14,7 +14,8 @@ constexpr int kCamera = 9;       // parameters of a camera
 constexpr int kThirdRadial = 8;  // k3 among them
 constexpr int kRotation = 18;    // the first of three
 constexpr int kTranslation = 21;
-constexpr double kOtherK3 = 0.1;  // one sigma of a k3 that is taken as 0
+using Parameters = Eigen::Matrix<double, kRigParameters, 1>;
+
 // A step of a parameter that changes positions of points by far less than a pixel.
 double step_of(int parameter) {
   if (parameter >= kTranslation) return 1e-3;    // mm
@@ -67,6 +68,7 @@ double depth_of(const Rig& rig, const Eigen::Matrix3d& r1, const SeenPoint& seen
 
 // Gauss-Newton's normal equations of all parameters, from which the poses of the grids are eliminated.
 RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::vector<GridPair>& pairs) {
+  constexpr double kOtherK3 = 0.02;  // one sigma of what a k3 may add at the corner of the picture
   const std::vector<Eigen::Vector3d> points = corner_points(shape);
   RigCovariance normal = RigCovariance::Zero();
   double squares = 0;
@@ -110,13 +112,27 @@ RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::v
     left_over += static_cast<int>(4 * count) - 6;
   }
   const double variance = squares / left_over;
-  if (fit.lens == Lens::kWithoutK3) {
-    for (const int k3 : {kThirdRadial, kCamera + kThirdRadial})
-      normal(k3, k3) += variance / (kOtherK3 * kOtherK3);
+  const RigCovariance full = normal;
+  std::vector<int> kept;  // k3 of lenses that have none
+  if (fit.lens == Lens::kWithoutK3) kept = {kThirdRadial, kCamera + kThirdRadial};
+  for (const int k3 : kept) {
+    normal.row(k3).setZero();
+    normal.col(k3).setZero();
+    normal(k3, k3) = 1;
   }
-  const Eigen::Matrix<double, kRigParameters, 1> scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  const Parameters scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   const RigCovariance scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return variance * (scale.asDiagonal() * scaled.inverse() * scale.asDiagonal());
+  RigCovariance inverse = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  for (const int k3 : kept) inverse(k3, k3) = 0;
+  RigCovariance result = variance * inverse;
+  for (const int k3 : kept) {
+    const CameraModel& camera = k3 < kCamera ? fit.rig.left : fit.rig.right;
+    const double sigma = kOtherK3 / std::pow(camera.direction({0, 0}).norm(), 6);
+    Parameters change = -inverse * full.col(k3);  // of the other parameters, with this k3
+    change[k3] = 1;
+    result += sigma * sigma * change * change.transpose();
+  }
+  return result;
 }
 
 Certainty certainty_of(const RigFit& fit, const RigCovariance& covariance) {
@@ -143,7 +159,7 @@ DepthError depth_error(const Rig& rig, const Rectification& rectification, const
   const Eigen::Vector2d middle((rig.width - 1) / 2.0 + disparity_offset, (rig.height - 1) / 2.0);
   const Eigen::Vector3d ray = p1.leftCols<3>().inverse() * middle.homogeneous();
   const SeenPoint seen = seen_by(rig, rectification.r1.transpose() * (depth_mm * ray));
-  Eigen::Matrix<double, kRigParameters, 1> slope;
+  Parameters slope;
   for (int i = 0; i < kRigParameters; ++i) {
     const double step = step_of(i);
     slope[i] = (depth_of(changed(rig, i, step), rectification.r1, seen) -
