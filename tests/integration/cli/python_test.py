@@ -346,8 +346,8 @@ class Runs(PythonTest):
             self.assertIn(text, str(self.refusal(lambda: board.run(*pair))))  # noqa: B023
         with self.assertRaisesRegex(TypeError, "left: float64: must be an array of uint8"):
             board.run(left / 2, right)
-        with self.assertRaisesRegex(TypeError, "truth: an array: must be a number, a text or a path"):
-            board.run(left, right, truth=left)
+        with self.assertRaisesRegex(TypeError, "truth: uint8 .1, 24, 32.: must be an array of numbers"):
+            board.run(left, right, truth=left[None])
         self.assertIn("arrays, --synthetic: a run has one source",
                       str(self.refusal(lambda: board.run(left, right, synthetic=1))))
 
