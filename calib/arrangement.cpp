@@ -37,7 +37,8 @@ RightOf mirrored(const GridShape& shape, int width) {
   };
 }
 
-// The rig if the left picture i belongs to the right one partner(i), with these right corners. Nullopt if fewer than kFewestPairs are left, or no rig fits.
+// The rig if the left picture i belongs to the right one partner(i), with these right corners. Nullopt if
+// fewer than kFewestPairs are left, or no rig fits.
 std::optional<RigFit> fit_with(const GridViews& views, const Rig& guess, const RightOf& right_of,
                                const std::function<std::size_t(std::size_t)>& partner) {
   constexpr std::size_t kMostPairs = 16;

@@ -49,8 +49,8 @@ struct Rig {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-// Why the cameras cannot be those of a board, which stand side by side, upright, the left one first, and are of
-// one kind. Nullopt if they can.
+// Why the cameras cannot be those of a board, which stand side by side, upright, the left one first, and are
+// of one kind. Nullopt if they can.
 std::optional<std::string> problem_of(const Rig& rig);
 
 // The pixels at which the two cameras see a point, which is in camera coordinates of the left camera.

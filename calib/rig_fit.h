@@ -68,19 +68,19 @@ inline constexpr std::size_t kFewestPairs = 3;
 // Calibrates both cameras and their relative pose (OpenCV's calibrateCamera and stereoCalibrate). The first
 // fit uses the pairs that agree about the position of the right camera relative to the left. A corner is left
 // out on both sides if its misfit is above max(8 * median, 0.1 pixels). A pair is left out if it keeps less
-// than half of its corners, or if the rig fits to it 1.8 times worse, compared with each camera alone, than to
-// the median pair. The fit is repeated until it uses the same corners again. Then each camera is fitted by
+// than half of its corners, or if the rig fits to it 1.8 times worse, compared with each camera alone, than
+// to the median pair. The fit is repeated until it uses the same corners again. Then each camera is fitted by
 // itself to these corners. The result has the lenses of these fits, if the rig fits 1.5 times worse than its
 // cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma. If the pairs do
-// not nearly agree where the cameras stand, only the lenses of single fits are the result. The caller looks at
-// RigFit::evidence. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if
-// OpenCV finds no rig.
+// not nearly agree where the cameras stand, only the lenses of single fits are the result. The caller looks
+// at RigFit::evidence. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error
+// if OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
-// The rig with the lenses of single fits to all corners of all pairs, of which none is left out. The fits start
-// at the cameras of `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws std::runtime_error if
-// OpenCV finds no rig.
+// The rig with the lenses of single fits to all corners of all pairs, of which none is left out. The fits
+// start at the cameras of `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws
+// std::runtime_error if OpenCV finds no rig.
 std::optional<RigFit> fit_all(const GridShape& shape, const std::vector<GridPair>& pairs, const Rig& guess);
 
 // One fit to the used corners, starting at the cameras of `guess`, whose lenses it may change unless they are

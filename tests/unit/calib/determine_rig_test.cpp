@@ -177,8 +177,8 @@ TEST(DetermineRig, FindsTheTruthWithoutNoise) {
   }
 }
 
-// The grid moves by 4 mm and 0.8 degrees between the exposures: the joint fit would change the focal length by
-// a tenth.
+// The grid moves by 4 mm and 0.8 degrees between the exposures: the joint fit would change the focal length
+// by a tenth.
 TEST(FitRig, DoesNotBendTheLensesOfABadRig) {
   const FaultyRig made = test::made_rig(1, Fault::kMoved);
   const RigFit fit = fit_rig(made.grid, made.width, made.height, made.pairs);
