@@ -146,8 +146,8 @@ class BankArbiter {
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const ArbiterStats& stats() const { return stats_; }
-  // Counts the rows and refreshes of sdram, and their cycles, up to `end_cycle`. Counting must have been on in
-  // all of them, or in none.
+  // Counts the rows and refreshes of sdram, and their cycles, up to `end_cycle`. Counting must have been on
+  // in all of them, or in none.
   void count_rows(std::uint64_t end_cycle);
 
   // Whether a request without competitors is granted in its cycle.

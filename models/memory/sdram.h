@@ -86,8 +86,8 @@ class SdramRows {
   // The cycle in which the next refresh is due, from busy_state(cycle); it may be late. 0: never.
   std::uint64_t next_refresh(std::uint64_t cycle, std::uint64_t state) const;
 
-  // Returns, of the cycles before `end` since the last call, those with an opening and with a refresh: [Cause];
-  // and how many of both have begun in them.
+  // Returns, of the cycles before `end` since the last call, those with an opening and with a refresh:
+  // [Cause]; and how many of both have begun in them.
   using Counts = std::array<std::uint64_t, 2>;
   std::pair<Counts, Counts> take(std::uint64_t end);
 
