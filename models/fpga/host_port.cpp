@@ -67,6 +67,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
   served_bank_ = bank;
   served_traffic_ = traffic();
+  served_end_ = burst_.end;
   // The first cycle that is not decided. A word that was refused up to the end of a frame requests again in
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
@@ -159,15 +160,26 @@ void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
       conflicts->hear_apart(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome),
                             next->outcome.cause);
     }
+    if (cycles == next->cycles) continue;
     next->cycle += cycles;
     next->cycles -= cycles;
-    if (next->cycles != 0) break;
+    break;
   }
-  if (next == served_.end()) {
+  if (!in_frame) counted_ahead_.swap(served_);
+  if (!in_frame || next == served_.end()) {
     served_.clear();
   } else {
     served_.erase(served_.begin(), next);
   }
+}
+
+AddressRange HostPort::counted_ahead_of(std::uint64_t cycle) const {
+  std::uint64_t words = 0;
+  for (const Served& served : counted_ahead_) {
+    if (grants(served.outcome) && served.cycle + served.cycles > cycle)
+      words += std::min(served.cycles, served.cycle + served.cycles - cycle);
+  }
+  return {served_end_ - 4 * words, served_end_};
 }
 
 }  // namespace stereotlm::fpga

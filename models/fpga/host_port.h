@@ -80,6 +80,9 @@ class HostPort {
   void count_words() {
     if (frames_.is_running()) count_served(frames_.cycle(), true);
   }
+  // While no frame runs: the words that are counted already, and that are granted in `cycle` or later.
+  AddressRange counted_ahead_of(std::uint64_t cycle) const;
+
   // Finishes the frame, after the cycle in which its last write was granted. Words served before the frame's
   // cycle() belong to it, later ones do not.
   void finish_frame() {
@@ -131,7 +134,9 @@ class HostPort {
   bool is_joined_ = false;       // the burst takes part in the arbitration
   bool is_moved_ = false;        // the data of the burst is in place; its words are still to be served
   std::vector<Served> served_;
-  std::size_t served_bank_ = 0;  // bank of all served_
+  std::vector<Served> counted_ahead_;  // of the last burst that was counted outside frames
+  std::uint64_t served_end_ = 0;       // byte address behind the burst of served_
+  std::size_t served_bank_ = 0;        // bank of all served_
   HostTraffic served_traffic_ = HostTraffic::kCapture;
 };
 

@@ -64,6 +64,8 @@ class StereoCore : public sc_core::sc_module, private FastCore::Board {
   Fidelity fidelity() const { return config_.fidelity; }                // the configured fidelity
   const memory::Crossbar& crossbar() const { return crossbar_; }        // between the stages and the banks
   const CoreDatapath& datapath() const { return datapath_; }            // the modules of the stages
+  const HostPort& host_port() const { return host_port_; }              // of the local bus
+  const Clock& clock() const { return clock_; }                         // of the core and of the banks
   const RegisterFile& register_file() const { return register_file_; }  // registers of the core
   LocalBus& local_bus_port() { return local_bus_; }                     // the core's end of the local bus
   const LocalBus& local_bus_port() const { return local_bus_; }         // the core's end of the local bus

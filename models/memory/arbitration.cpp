@@ -240,8 +240,9 @@ void Arbitration::end_counting(std::uint64_t end_cycle) {
 }
 
 // Adds the grants since the last count_alone(): in all of their cycles counting is on, or in none.
-ArbiterStats Arbitration::stats(std::size_t bank) const {
+ArbiterStats Arbitration::stats(std::size_t bank, std::uint64_t end_cycle) const {
   BankArbiter arbiter = arbiters_[bank];
+  arbiter.count_rows(end_cycle);
   for_each_port(alone_, [&](Port port) {
     if (routes_[port].bank == bank)
       arbiter.count(alone_outcome(port, routes_[port].write), alone_grants_[port]);

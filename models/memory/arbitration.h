@@ -108,7 +108,8 @@ class Arbitration {
   // The statistics count cycles first_cycle .. end_cycle - 1 only. end_counting() adds the idle cycles.
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
-  ArbiterStats stats(std::size_t bank) const;
+  // `end_cycle`: up to which rows and refreshes outside the counted cycles are counted.
+  ArbiterStats stats(std::size_t bank, std::uint64_t end_cycle = 0) const;
   std::size_t banks() const { return arbiters_.size(); }
 
  private:

@@ -119,10 +119,12 @@ void BankArbiter::count_direction(PortMask requests, PortMask granted, bool writ
 
 void BankArbiter::count_rows(std::uint64_t end_cycle) {
   if (!rows_) return;
-  const auto [row, refresh] = rows_->take_busy_cycles(end_cycle);
+  const auto [cycles, begun] = rows_->take(end_cycle);
+  stats_.add(ArbiterStats::kRowsOpened, begun[0]);
+  stats_.add(counting_ ? ArbiterStats::kRefreshes : ArbiterStats::kUncountedRefreshes, begun[1]);
   if (!counting_) return;
-  stats_.add(ArbiterStats::kRowCycles, row);
-  stats_.add(ArbiterStats::kRefreshCycles, refresh);
+  stats_.add(ArbiterStats::kRowCycles, cycles[0]);
+  stats_.add(ArbiterStats::kRefreshCycles, cycles[1]);
 }
 
 // The first grant moves the order. Each further one acts as a cycle without request does.

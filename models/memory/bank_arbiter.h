@@ -45,6 +45,9 @@ class ArbiterStats {
     kContended,
     kIdle,
     kUncounted,
+    kRowsOpened,
+    kRefreshes,
+    kUncountedRefreshes,
     kFirstGrants,  // then those of the other ports, then the blame
   };
 
@@ -65,6 +68,10 @@ class ArbiterStats {
   std::uint64_t idle_cycles() const { return counts_[kIdle]; }  // all other cycles
   // Accesses granted in cycles that are not counted.
   std::uint64_t uncounted_accesses() const { return counts_[kUncounted]; }
+  // Of sdram, before the last count_rows(): rows opened; refreshes begun in counted cycles, and in others.
+  std::uint64_t rows_opened() const { return counts_[kRowsOpened]; }
+  std::uint64_t refreshes() const { return counts_[kRefreshes]; }
+  std::uint64_t uncounted_refreshes() const { return counts_[kUncountedRefreshes]; }
   std::uint64_t grants(Port port) const { return counts_[grants_place(port)]; }
   // Stall cycles of a port. `by`: the port that was granted in them, or another cause.
   std::uint64_t blame(Port port, std::size_t by) const { return counts_[blame_place(port, by)]; }
@@ -139,8 +146,8 @@ class BankArbiter {
   void begin_counting(std::uint64_t first_cycle);
   void end_counting(std::uint64_t end_cycle);
   const ArbiterStats& stats() const { return stats_; }
-  // Counts the row and refresh cycles of sdram up to `end_cycle`. Counting must have been on in all of them,
-  // or in none.
+  // Counts the rows and refreshes of sdram, and their cycles, up to `end_cycle`. Counting must have been on
+  // in all of them, or in none.
   void count_rows(std::uint64_t end_cycle);
 
   // Whether a request without competitors is granted in its cycle.

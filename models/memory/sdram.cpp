@@ -29,17 +29,23 @@ bool SdramRows::may_access(std::uint64_t cycle, std::uint32_t word) {
   return cycle >= busy_until_;
 }
 
-SdramRows::BusyCycles SdramRows::take_busy_cycles(std::uint64_t end) {
+std::pair<SdramRows::Counts, SdramRows::Counts> SdramRows::take(std::uint64_t end) {
   pass(end);
-  BusyCycles cycles{};
+  Counts cycles{};
+  Counts begun{};
   std::size_t left = 0;
   for (const Busy& busy : busy_) {
-    if (busy.first < end)
-      cycles[static_cast<std::size_t>(busy.cause)] += std::min(busy.end, end) - busy.first;
-    if (busy.end > end) busy_[left++] = {std::max(busy.first, end), busy.end, busy.cause};
+    const auto cause = static_cast<std::size_t>(busy.cause);
+    const bool has_begun = busy.first < end;
+    if (has_begun) {
+      cycles[cause] += std::min(busy.end, end) - busy.first;
+      begun[cause] += busy.is_counted ? 0 : 1;
+    }
+    if (busy.end > end || !has_begun)
+      busy_[left++] = {std::max(busy.first, end), busy.end, busy.cause, has_begun || busy.is_counted};
   }
   busy_.resize(left);
-  return cycles;
+  return {cycles, begun};
 }
 
 void SdramRows::set_busy_state(std::uint64_t cycle, std::uint64_t state) {
@@ -47,7 +53,7 @@ void SdramRows::set_busy_state(std::uint64_t cycle, std::uint64_t state) {
   busy_until_ = cycle + (state >> 2U);
   cause_ = (state >> 1U & 1U) != 0 ? Cause::kRefresh : Cause::kRow;
   busy_.clear();
-  if (busy_until_ != cycle) busy_.push_back({cycle, busy_until_, cause_});
+  if (busy_until_ != cycle) busy_.push_back({cycle, busy_until_, cause_, true});
 }
 
 std::uint64_t SdramRows::next_refresh(std::uint64_t cycle, std::uint64_t state) const {
@@ -76,7 +82,7 @@ void SdramRows::begin_refresh(std::uint64_t cycle) {
 void SdramRows::be_busy(std::uint64_t first, int cycles, Cause cause) {
   busy_until_ = first + static_cast<std::uint64_t>(cycles);
   cause_ = cause;
-  if (cycles > 0) busy_.push_back({first, busy_until_, cause});
+  busy_.push_back({first, busy_until_, cause});
 }
 
 }  // namespace stereotlm::memory

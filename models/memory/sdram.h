@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/kernels/integer_rule.h"
@@ -73,7 +74,7 @@ class SdramRows {
   void set_open_row(std::size_t internal_bank, std::optional<std::uint32_t> row) {
     open_[internal_bank] = row;
   }
-  // What keeps the bank busy from `cycle` on, as a word: take_busy_cycles(cycle) has just been called. With
+  // What keeps the bank busy from `cycle` on, as a word: take(cycle) has just been called. With
   // the open rows it is the state in `cycle`.
   std::uint64_t busy_state(std::uint64_t cycle) const {
     const std::uint64_t cycles = busy_until_ > cycle ? busy_until_ - cycle : 0;
@@ -85,15 +86,17 @@ class SdramRows {
   // The cycle in which the next refresh is due, from busy_state(cycle); it may be late. 0: never.
   std::uint64_t next_refresh(std::uint64_t cycle, std::uint64_t state) const;
 
-  // Returns the cycles before `end` with an opening and with a refresh since the last call: [Cause].
-  using BusyCycles = std::array<std::uint64_t, 2>;
-  BusyCycles take_busy_cycles(std::uint64_t end);
+  // Returns, of the cycles before `end` since the last call, those with an opening and with a refresh:
+  // [Cause]; and how many of both have begun in them.
+  using Counts = std::array<std::uint64_t, 2>;
+  std::pair<Counts, Counts> take(std::uint64_t end);
 
  private:
   struct Busy {
     std::uint64_t first;
     std::uint64_t end;
     Cause cause;
+    bool is_counted = false;  // among those that have begun
   };
 
   void pass(std::uint64_t end);

@@ -22,10 +22,11 @@ Board::Board(const sc_core::sc_module_name& name, const BoardConfig& config, Bin
     binder.bind(core.banks[bank], banks[bank].port, "crossbar_to_" + config.banks[bank].name);
 }
 
-BoardCounters counters_of(const Board& board) {
+BoardCounters counters_of(const Board& board, std::uint64_t now_ps) {
   const fpga::StereoCore& core = board.core;
   const fpga::CoreDatapath& datapath = core.datapath();
-  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbitration());
+  BoardCounters counters = counters_of(core.frames(), core.crossbar().arbitration(), &core.host_port(),
+                                       core.clock().edge_at_or_after(now_ps));
   for (std::size_t bank = 0; bank < board.banks.size(); ++bank) {
     const memory::SsramBank::Stats& stats = board.banks[bank].stats();
     counters.banks[bank].accesses +=

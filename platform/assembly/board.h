@@ -25,8 +25,9 @@ class Board : public sc_core::sc_module {
   sc_core::sc_vector<memory::SsramBank> banks;  // in the order of the configuration
 };
 
-// Of all finished frames. To be called between two frames.
-BoardCounters counters_of(const Board& board);
+// Of all finished frames, and of what the host has done outside frames before `now_ps`. To be called between
+// two frames.
+BoardCounters counters_of(const Board& board, std::uint64_t now_ps = 0);
 
 // The figures of the frames that `counters` cover, as collect_statistics() in platform/figures/collect.h.
 // `counters` were taken from this board, now or earlier.

@@ -50,7 +50,7 @@ class Computer : public sc_core::sc_module, public ComputerView {
  private:
   ComputerControls controls() override;
   std::uint64_t now_ps() const override { return kernel_time::now_ps(); }
-  BoardCounters board_counters() override { return counters_of(board); }
+  BoardCounters board_counters() override { return counters_of(board, now_ps()); }
   void catch_up() override { board.core.catch_up(); }
   void bind_pci(Binder& binder);
   void bind_capture();

@@ -10,14 +10,10 @@ namespace stereotlm::platform {
 
 std::vector<PinsOfBank> bank_pins(const BoardConfig& board) {
   const std::vector<memory::SsramBankConfig> configs = ssram_configs(board);
-  const std::vector<PlacedBuffer> all = buffers(board);
+  const std::vector<bool> used = used_banks(board);
   std::vector<PinsOfBank> pins;
   for (std::size_t bank = 0; bank < configs.size(); ++bank) {
-    const std::string& name = board.banks[bank].name;
-    const bool is_used = std::any_of(all.begin(), all.end(), [&](const PlacedBuffer& buffer) {
-      return buffer.bank == name && buffer.rows(board.image) > 0;
-    });
-    if (is_used) pins.push_back({name, area::pins_of(configs[bank])});
+    if (used[bank]) pins.push_back({board.banks[bank].name, area::pins_of(configs[bank])});
   }
   return pins;
 }

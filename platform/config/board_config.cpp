@@ -6,6 +6,12 @@
 
 namespace stereotlm::platform {
 
+memory::BankEnergy energy_of(const BankConfig& bank) {
+  const memory::BankEnergy& typical = memory::kBankEnergies[static_cast<std::size_t>(bank.kind)];
+  return {bank.standby_mw.value_or(typical.standby_mw), bank.access_pj.value_or(typical.access_pj),
+          bank.row_pj.value_or(typical.row_pj), bank.refresh_pj.value_or(typical.refresh_pj)};
+}
+
 std::vector<memory::SsramBankConfig> ssram_configs(const BoardConfig& board) {
   std::vector<memory::SsramBankConfig> banks;
   for (const BankConfig& bank : board.banks) {

@@ -11,6 +11,7 @@
 #include "models/fpga/core_ports.h"
 #include "models/kernels/filter_kernel.h"
 #include "models/kernels/matching_cost.h"
+#include "models/memory/bank_energy.h"
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::platform {
@@ -87,7 +88,15 @@ struct BankConfig {
   memory::BankKind kind = memory::BankKind::kZbtPipelined;  // kBankTraits has their properties
   int turnaround_cycles = 0;                                // 1..16 if the kind has turnaround, else 0
   std::optional<memory::SdramTiming> sdram = std::nullopt;  // of this kind only
+  // memory::BankEnergy, which has the ranges; nullopt: that of the kind
+  std::optional<double> standby_mw = std::nullopt;
+  std::optional<int> access_pj = std::nullopt;
+  std::optional<int> row_pj = std::nullopt;      // of sdram only
+  std::optional<int> refresh_pj = std::nullopt;  // of sdram only
 };
+
+// What the bank takes: its own figures, and those of its kind in place of what it does not give.
+memory::BankEnergy energy_of(const BankConfig& bank);
 
 // The banks of a buffer, by name: one, or 2 to 16 over which its rows are striped (contract 8.2).
 struct BufferBanks {

@@ -401,10 +401,29 @@ YamlNode write_cost(const BoardConfig& board) {
 std::string rule_text_of(const BankKey& key) {
   if (!key.kind) return key.rule.text;
   const std::string kind = memory::traits_of(*key.kind).name;
+  if (key.is_given) return fmt::format("{}; refused beside another kind than {}", key.rule.text, kind);
   if (key.name == kRefreshCycles)
     return fmt::format("{}; required where the kind is {} and refreshes, refused beside off or another kind",
                        key.rule.text, kind);
   return fmt::format("{}; required where the kind is {}, refused beside another", key.rule.text, kind);
+}
+
+// A figure of the energy of a bank. `energy`: where energy_of() has it.
+template <typename Value>
+BankKey energy_key(const char* name, const char* meaning, ValueRule rule,
+                   std::optional<Value> BankConfig::*own, Value memory::BankEnergy::*energy,
+                   std::optional<memory::BankKind> kind = {}) {
+  using Kept = std::conditional_t<std::is_same_v<Value, int>, std::int64_t, Value>;
+  return {below(kEnergySection, name),
+          meaning,
+          std::is_same_v<Value, int> ? "pJ" : "mW",
+          std::move(rule),
+          {[=](const BankConfig& bank) { return KeyValue(Kept{energy_of(bank).*energy}); },
+           [=](BankConfig& bank, const KeyValue& value) {
+             bank.*own = static_cast<Value>(std::get<Kept>(value));
+           }},
+          kind,
+          [own](const BankConfig& bank) { return (bank.*own).has_value(); }};
 }
 
 // The keys of `ssram`.
@@ -416,8 +435,9 @@ std::vector<Key> ssram_keys() {
       ValueRule rule = key.rule;
       rule.text = rule_text_of(key);
       const std::string meaning = key.meaning + (key.kind ? "; of " : " of ") + bank;
-      keys.push_back(part(below(section, key.name), meaning, key.unit, std::move(rule)));
-      keys.back().is_optional = key.kind || section != std::string("ssram.default");
+      const char* const without = key.is_given ? "; optional, without it that of the kind" : "";
+      keys.push_back(part(below(section, key.name), meaning + without, key.unit, std::move(rule)));
+      keys.back().is_optional = key.kind || key.is_given || section != std::string("ssram.default");
     }
   }
   return keys;
@@ -655,6 +675,15 @@ const std::vector<BankKey>& bank_keys() {
           "cycles from one refresh to the next", "cycles", rule_of(memory::kRefreshIntervalRule, "off")),
       key(kRefreshCycles, of_timing(&SdramTiming::refresh_cycles), "cycles of a refresh", "cycles",
           rule_of(memory::kRefreshCyclesRule)),
+      energy_key("standby_mw", "power without accesses, to the nearest uW,",
+                 rule_of(DecimalRule{0, memory::kMostStandbyMw}), &BankConfig::standby_mw,
+                 &memory::BankEnergy::standby_mw),
+      energy_key("access_pj", "energy of an access, beyond standby,", rule_of(memory::kWorkEnergyRule),
+                 &BankConfig::access_pj, &memory::BankEnergy::access_pj),
+      energy_key("row_pj", "energy to open and to close a row", rule_of(memory::kWorkEnergyRule),
+                 &BankConfig::row_pj, &memory::BankEnergy::row_pj, BankKind::kSdram),
+      energy_key("refresh_pj", "energy of a refresh", rule_of(memory::kWorkEnergyRule),
+                 &BankConfig::refresh_pj, &memory::BankEnergy::refresh_pj, BankKind::kSdram),
   };
   return kKeys;
 }

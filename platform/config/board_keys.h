@@ -107,8 +107,9 @@ std::string unknown_key_text(const std::string& path);
 std::string cost_text(const kernels::MatchingCost& cost);
 
 // A key of `ssram.default` and of a bank.
+inline constexpr const char* kEnergySection = "energy";
 struct BankKey {
-  std::string name;     // last part of the path
+  std::string name;     // the path below that of the bank
   std::string meaning;  // one line
   std::string unit;     // empty: none
   ValueRule rule;
@@ -116,6 +117,8 @@ struct BankKey {
   // Banks of this kind need the key. For banks of all other kinds it has no effect. In one entry with another
   // kind it is an error. nullopt: every bank has a value.
   std::optional<memory::BankKind> kind = {};
+  // Of the energy, which may be missing: whether the bank gives it. Null for any other key.
+  std::function<bool(const BankConfig&)> is_given = nullptr;
 };
 const std::vector<BankKey>& bank_keys();  // in the order of board files
 // Whether the bank needs the key: refresh_cycles only with a refresh.

@@ -87,17 +87,25 @@ class BoardReader {
 
   BankEntry read_bank_entry(const std::string& path, const YamlNode::Entry& entry) {
     BankEntry bank{entry.key.place, {}};
-    const auto entries = values_.read_entries(path, entry.value, entry.key.place);
-    if (!entries) return bank;
-    for (const YamlNode::Entry* const given : *entries) {
-      for (const BankKey& key : bank_keys()) {
-        if (!given->key.is(key.name)) continue;
-        bank.given[key.name] = {given->value.place,
-                                values_.read(below(path, key.name), given->value, key.rule)};
-      }
-    }
+    read_bank_values(path, "", entry, bank);
     check_timing_use(path, bank);
     return bank;
+  }
+
+  // `section`: below the path of the bank, or empty.
+  void read_bank_values(const std::string& path, const std::string& section, const YamlNode::Entry& entry,
+                        BankEntry& bank) {
+    const std::string full = section.empty() ? path : below(path, section);
+    const auto entries = values_.read_entries(full, entry.value, entry.key.place);
+    if (!entries) return;
+    for (const YamlNode::Entry* const given : *entries) {
+      const std::string name = below(section, given->key.text);
+      if (name == kEnergySection) read_bank_values(path, name, *given, bank);
+      for (const BankKey& key : bank_keys()) {
+        if (name != key.name) continue;
+        bank.given[name] = {given->value.place, values_.read(below(path, name), given->value, key.rule)};
+      }
+    }
   }
 
   // An entry with a timing of another kind than its own is a mistake. If the entry inherits its kind, the
@@ -163,8 +171,8 @@ class BoardReader {
       if (given != nullptr && given->value) {
         key.access.set(bank, *given->value);
         values_.accept(below(path, key.name), given->place);
-      } else if (given != nullptr || !key.kind) {
-        continue;  // reported with its entry
+      } else if (given != nullptr || !key.kind || key.is_given) {
+        continue;  // reported with its entry, or not needed
       } else if (const auto* const kind = own.find("kind")) {
         values_.report_missing(latest(latest(own.key, kind->place), defaults.key), below(path, key.name),
                                rule_text(below("ssram.banks.NAME", key.name)), true);

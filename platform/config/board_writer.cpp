@@ -11,17 +11,22 @@
 namespace stereotlm::platform {
 namespace {
 
-// What a bank gives beside `ssram.default`, which has the values of `base`.
+// What a bank gives beside `ssram.default`, which has the values of `base` but for the energy.
 YamlNode bank_node(const BankConfig& bank, const BankConfig* base) {
   YamlNode node = YamlNode::map();
   node.style = YamlNode::Style::kOther;
   const bool has_words = base == nullptr || bank.words != base->words;
   const bool has_kind = base == nullptr || bank.kind != base->kind ||
                         bank.turnaround_cycles != base->turnaround_cycles || !(bank.sdram == base->sdram);
+  YamlNode energy = YamlNode::map();
+  energy.style = YamlNode::Style::kOther;
   for (const BankKey& key : bank_keys()) {
-    if (needs_key(bank, key) && (key.name == "words" ? has_words : has_kind))
-      node.add(YamlNode::plain(key.name), value_node(key.access.get(bank)));
+    if (!needs_key(bank, key)) continue;
+    if (key.is_given ? key.is_given(bank) : key.name == "words" ? has_words : has_kind)
+      (key.is_given ? energy : node)
+          .add(YamlNode::plain(key.name.substr(key.name.find('.') + 1)), value_node(key.access.get(bank)));
   }
+  if (!energy.entries.empty()) node.add(YamlNode::plain(kEnergySection), std::move(energy));
   return node;
 }
 
@@ -40,7 +45,8 @@ YamlNode section_node(const std::string& path, const BoardConfig& board) {
     const Key* const key = find_key(full);
     YamlNode value;
     if (full == "ssram.default") {
-      value = bank_node(board.banks.empty() ? BankConfig() : board.banks.front(), nullptr);
+      const BankConfig first = board.banks.empty() ? BankConfig() : board.banks.front();
+      value = bank_node({"", first.words, first.kind, first.turnaround_cycles, first.sdram}, nullptr);
     } else if (full == "ssram.banks") {
       value = YamlNode::map();
       for (const BankConfig& bank : board.banks)

@@ -66,6 +66,17 @@ std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image)
   return buffer.index < 0 ? pixels : pixels / 4;
 }
 
+std::vector<bool> used_banks(const BoardConfig& board) {
+  const std::vector<PlacedBuffer> all = buffers(board);
+  std::vector<bool> used;
+  for (const BankConfig& bank : board.banks) {
+    used.push_back(std::any_of(all.begin(), all.end(), [&](const PlacedBuffer& buffer) {
+      return buffer.bank == bank.name && buffer.rows(board.image) > 0;
+    }));
+  }
+  return used;
+}
+
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board) {
   std::vector<AddressRange> ranges;
   for (const PlacedBuffer& buffer : buffers(board)) ranges.push_back(buffer.range);

@@ -78,6 +78,9 @@ void move_buffer(BoardConfig& board, const PlacedBuffer& buffer, const std::stri
 // Size of a buffer, or of a part, in 32-bit words.
 std::uint64_t buffer_words(const PlacedBuffer& buffer, const ImageConfig& image);
 
+// [bank]: whether it holds a word of a buffer.
+std::vector<bool> used_banks(const BoardConfig& board);
+
 // PlacedBuffer::range of each buffer, in the order of buffers().
 std::vector<AddressRange> buffer_ranges(const BoardConfig& board);
 

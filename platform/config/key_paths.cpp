@@ -70,7 +70,7 @@ const Names& names_below(std::string_view path) {
       for (std::size_t dot = key.path.find('.'); dot != std::string::npos;
            dot = key.path.find('.', dot + 1)) {
         const std::string section = key.path.substr(0, dot);
-        if (found.count(section) == 0) add(section, true);
+        if (found.count(section) == 0) add(section, last_part(section) != kEnergySection);
         found[section];
       }
       add(key.path, !key.is_optional);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "models/words_by_range.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/config/computer_parts.h"
 #include "platform/figures/audit.h"
@@ -26,7 +27,8 @@ BankStatistics bank_statistics(const ArbiterStats& arbiter) {
           0,
           1,
           arbiter.row_cycles(),
-          arbiter.refresh_cycles()};
+          arbiter.refresh_cycles(),
+          BankEnergyStatistics{0, arbiter.rows_opened(), arbiter.refreshes()}};
 }
 
 PortStatistics port_statistics(const fpga::PortCycles& cycles) {
@@ -37,6 +39,29 @@ PortStatistics port_statistics(const fpga::PortCycles& cycles) {
           cycles.idle(),
           cycles.blocked(),
           cycles.starved()};
+}
+
+// Adds what happens outside frames to the work in the counted cycles, without the words counted early.
+void add_uncounted_work(const BoardConfig& config, const ComputerCounters& counters, Statistics& statistics) {
+  const AddressRange& ahead = counters.board.ahead;
+  WordsByRange early(buffer_ranges(config));
+  early.add(ahead.first, (ahead.end - ahead.first) / 4);
+  for (std::size_t bank = 0; bank < counters.board.banks.size(); ++bank) {
+    std::optional<BankEnergyStatistics>& energy = statistics.banks[bank].energy;
+    if (!energy) continue;
+    const ArbiterStats& arbiter = counters.board.banks[bank].arbiter;
+    energy->accesses += arbiter.uncounted_accesses();
+    if (bank == memory::bank_of_address(ahead.first)) energy->accesses -= early.total();
+    if (energy->refreshes) *energy->refreshes += arbiter.uncounted_refreshes();
+  }
+  std::vector<BufferStatistics>& of_buffers = statistics.energy.buffers;
+  const std::vector<PlacedBuffer> all = buffers(config);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    of_buffers[static_cast<std::size_t>(all[i].buffer)].bytes +=
+        4 * (counters.words.granted[i] - early.words()[i]);
+  }
+  // The host reads nothing else.
+  of_buffers[static_cast<std::size_t>(Buffer::kDisparity)].bytes += 4 * counters.local_bus.words_read;
 }
 
 // Returns the stall cycles that are not 0, sorted by port, bank and cause. The causes that are no ports come
@@ -159,15 +184,17 @@ void audit_rates(const BoardConfig& config, const FrameAccesses& accesses, bool 
 
 }  // namespace
 
-BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration) {
+BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration,
+                          const fpga::HostPort* host, std::uint64_t end_cycle) {
   BoardCounters counters;
+  if (host != nullptr) counters.ahead = host->counted_ahead_of(end_cycle);
   counters.frames = frames.frame_cycles().size();
   const fpga::CoreControl& control = frames.control();
   for (std::size_t port = 0; port < control.ports().size(); ++port)
     counters.ports.push_back(control.port_cycles(port));
   const fpga::DirectCounts& direct = frames.direct_counts();
   for (std::size_t bank = 0; bank < arbitration.banks(); ++bank)
-    counters.banks.push_back({arbitration.stats(bank), direct.accesses[bank]});
+    counters.banks.push_back({arbitration.stats(bank, end_cycle), direct.accesses[bank]});
   counters.issued = direct.slots;
   counters.packed_words = direct.packed_words;
   counters.written_words = direct.written_words;
@@ -188,6 +215,7 @@ Statistics collect_statistics(const BoardConfig& config, const FrameAccesses& ac
   for (const fpga::PortCycles& port : counters.ports) statistics.ports.push_back(port_statistics(port));
   statistics.blame = blame_rows(config, counters);
   derive_figures(config, statistics);
+  derive_energy(config, statistics);
 
   Audit audit;
   audit_core(statistics, audit);
@@ -227,6 +255,8 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   around.cameras = {camera_statistics("left", counters.cameras[0]),
                     camera_statistics("right", counters.cameras[1])};
   derive_delivery_figures(deliveries, allocation_period_frames(config), statistics);
+  add_uncounted_work(config, counters, statistics);
+  derive_energy(config, statistics);
   Bound of_turns = core_bound(config, accesses);
   add_system_bound(config, accesses, true, of_turns);
   statistics.bound.system = of_turns.system;
@@ -235,6 +265,7 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);
   audit_words(config, counters.words, audit);
+  audit_energy(statistics, audit);
   audit_host_port(counters, audit);
   audit_computer(around, audit);
   audit_captures(around, counters, audit);

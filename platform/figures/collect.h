@@ -7,6 +7,7 @@
 
 #include "models/capture/capture_control.h"
 #include "models/fpga/frame_run.h"
+#include "models/fpga/host_port.h"
 #include "models/fpga/local_bus_control.h"
 #include "models/fpga/port_cycles.h"
 #include "models/memory/arbitration.h"
@@ -35,11 +36,13 @@ struct BoardCounters {
   std::array<std::uint64_t, 2> consumed{};  // [side]: slots that the matcher has consumed
   std::uint64_t packed_words = 0;           // result words that were packed
   std::uint64_t written_words = 0;          // result words that were written
+  AddressRange ahead;                       // HostPort::counted_ahead_of()
 };
 
-// Of a core without stages and without a host: all its frames work directly on memory.
-// Those of a Board are in platform/assembly/board.h.
-BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration);
+// Of a core without stages: all its frames work directly on memory. With a host: outside frames in the cycles
+// before `end_cycle`. Those of a Board are in platform/assembly/board.h.
+BoardCounters counters_of(const fpga::FrameRun& frames, const memory::Arbitration& arbitration,
+                          const fpga::HostPort* host = nullptr, std::uint64_t end_cycle = 0);
 
 // Returns the figures of the frames that `counters` cover; if there are any, also core_bound() of the board.
 // Checks the identities of contract section 6; Statistics::failed lists those that do not hold.

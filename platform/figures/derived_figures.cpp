@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "models/clock.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "models/fpga/placement.h"
@@ -104,8 +105,52 @@ void derive_figures(const BoardConfig& board, Statistics& statistics) {
   statistics.area = area_of(board);
 }
 
+void derive_energy(const BoardConfig& board, Statistics& statistics) {
+  EnergyStatistics& all = statistics.energy;
+  all.buffers.resize(kBufferKeys.size());
+  for (std::size_t i = 0; i < kBufferKeys.size(); ++i) all.buffers[i].name = name_of(static_cast<Buffer>(i));
+  if (!statistics.computer) {
+    all.time_ps = Clock(board.fpga.clock_mhz).edge_ps(statistics.cycles);
+    const fpga::CorePorts ports = core_ports(board);
+    for (BufferStatistics& buffer : all.buffers) {
+      buffer.bytes = 0;
+      for (std::size_t port = 0; port < ports.core_size(); ++port)
+        buffer.bytes += ports.group(port).buffer == buffer.name ? 4 * statistics.ports[port].grants : 0;
+    }
+  }
+  const auto frames = static_cast<double>(std::max<std::uint64_t>(statistics.frames, 1));
+  all.memory_pj = 0;
+  const std::vector<bool> used = used_banks(board);
+  for (std::size_t index = 0; index < board.banks.size(); ++index) {
+    std::optional<BankEnergyStatistics>& bank = statistics.banks[index].energy;
+    bank = used[index] ? std::optional(bank.value_or(BankEnergyStatistics())) : std::nullopt;
+    if (!bank) continue;
+    if (!statistics.computer) bank->accesses = statistics.banks[index].reads + statistics.banks[index].writes;
+    const bool has_rows = board.banks[index].sdram.has_value();
+    for (auto* const counter : {&bank->rows_opened, &bank->refreshes})
+      *counter = has_rows ? std::optional(counter->value_or(0)) : std::nullopt;
+    bank->energy_pj = memory::energy_pj(energy_of(board.banks[index]), all.time_ps, bank->accesses,
+                                        bank->rows_opened.value_or(0), bank->refreshes.value_or(0));
+    all.memory_pj += bank->energy_pj;
+  }
+  const auto energy = static_cast<double>(all.memory_pj);
+  for (BankStatistics& bank : statistics.banks) {
+    if (auto& its = bank.energy)
+      its->energy_percent = 100 * static_cast<double>(its->energy_pj) / std::max(energy, 1.0);
+  }
+  all.memory_mj_per_frame = energy / 1e9 / frames;
+  all.memory_mw = 1e3 * energy / std::max(static_cast<double>(all.time_ps), 1.0);
+  std::uint64_t bytes = 0;
+  for (BufferStatistics& buffer : all.buffers) {
+    bytes += buffer.bytes;
+    buffer.megabytes_per_frame = static_cast<double>(buffer.bytes) / 1e6 / frames;
+  }
+  all.megabytes_per_frame = static_cast<double>(bytes) / 1e6 / frames;
+}
+
 void derive_delivery_figures(const std::vector<Delivery>& deliveries, std::uint64_t turn,
                              Statistics& statistics) {
+  statistics.energy.time_ps = deliveries.back().host_ps;
   statistics.frames_per_second.system =
       static_cast<double>(deliveries.size()) / seconds(deliveries.back().host_ps);
   statistics.frames_per_second.steady = steady_rate(deliveries, turn);
@@ -134,6 +179,14 @@ void audit_core(const Statistics& statistics, Audit& audit) {
                     bank.refresh_cycles.value_or(0) + bank.idle_cycles,
                 "cycles", statistics.cycles);
   }
+}
+
+void audit_energy(const Statistics& statistics, Audit& audit) {
+  std::uint64_t of_banks = 0;
+  for (const BankStatistics& bank : statistics.banks) of_banks += bank.energy ? 4 * bank.energy->accesses : 0;
+  std::uint64_t of_buffers = 0;
+  for (const BufferStatistics& buffer : statistics.energy.buffers) of_buffers += buffer.bytes;
+  audit.equal("energy: bytes of the buffers", of_buffers, "4 * accesses of the banks", of_banks);
 }
 
 void audit_computer(const ComputerStatistics& computer, Audit& audit) {

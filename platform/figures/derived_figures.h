@@ -18,6 +18,10 @@ namespace stereotlm::platform {
 // as many entries as the board.
 void derive_figures(const BoardConfig& board, Statistics& statistics);
 
+// Sets what follows from the work of the banks, the bytes of the buffers and the time: energies and shares.
+// Without a computer also the time, the accesses and the bytes.
+void derive_energy(const BoardConfig& board, Statistics& statistics);
+
 // Times of a delivered frame.
 struct Delivery {
   std::uint64_t capture_ps = 0;  // time of the first pixel
@@ -33,13 +37,15 @@ std::uint64_t steady_frames(std::uint64_t frames, std::uint64_t turn);
 std::optional<SteadyRate> steady_rate(const std::vector<Delivery>& deliveries, std::uint64_t turn);
 
 // Sets what follows from the deliveries of a computer, at least one: frames_per_second.system and .steady,
-// and capture_to_host_ms. `turn`: allocation_period_frames().
+// capture_to_host_ms, and the time of the energy. `turn`: allocation_period_frames().
 void derive_delivery_figures(const std::vector<Delivery>& deliveries, std::uint64_t turn,
                              Statistics& statistics);
 
 // Checks the identities among the figures of the core, and of the computer around it.
 void audit_core(const Statistics& statistics, Audit& audit);
 void audit_computer(const ComputerStatistics& computer, Audit& audit);
+// Checks that each access of a bank is one of a buffer.
+void audit_energy(const Statistics& statistics, Audit& audit);
 
 // The accesses of the core's ports to the banks: [port][bank]. A port makes equally many in each frame, and
 // frame f uses entry f mod length of its list. Those to a striped buffer are divided among its banks by the

@@ -9,6 +9,33 @@
 
 namespace stereotlm::platform {
 
+// Of a bank (contract section 9): in the counted cycles; of a computer from power-up to the last delivery.
+struct BankEnergyStatistics {
+  std::uint64_t accesses = 0;
+  std::optional<std::uint64_t> rows_opened = std::nullopt;  // of sdram only
+  std::optional<std::uint64_t> refreshes = std::nullopt;    // of sdram only
+  std::uint64_t energy_pj = 0;
+  double energy_percent = 0;  // of all banks
+};
+
+// The accesses to a buffer, or to all of a list, in the same time.
+struct BufferStatistics {
+  std::string name;  // "left_image"
+  std::uint64_t bytes = 0;
+  double megabytes_per_frame = 0;  // 10^6 bytes
+};
+
+// What every text and document says of the energy.
+inline constexpr const char* kEnergyIsOf = "the memories alone: no FPGA, PCI, pins, controllers";
+struct EnergyStatistics {
+  std::uint64_t time_ps = 0;  // that all this covers
+  std::uint64_t memory_pj = 0;
+  double memory_mj_per_frame = 0;
+  double memory_mw = 0;
+  double megabytes_per_frame = 0;         // of all buffers
+  std::vector<BufferStatistics> buffers;  // in the order of Buffer; none of a table that is not there
+};
+
 // Statistics, at the end of this header, has the figures of one run, as `stats.json` lists them (contract
 // section 6). Counters of banks and ports are sums over the frames, and cover only the counted cycles of
 // contract section 2.
@@ -26,6 +53,7 @@ struct BankStatistics {
   int ports = 1;                        // accesses that the bank can serve in a cycle
   std::optional<std::uint64_t> row_cycles = std::nullopt;      // of sdram only: rows were being opened
   std::optional<std::uint64_t> refresh_cycles = std::nullopt;  // of sdram only
+  std::optional<BankEnergyStatistics> energy = std::nullopt;   // of a bank that holds a buffer
 };
 
 // The counters of a port. Each counted cycle is of one kind.
@@ -128,6 +156,7 @@ struct Statistics {
   std::vector<BankStatistics> banks;           // in the order of the board file
   std::vector<PortStatistics> ports;           // in the order of memory::Port
   std::vector<BlameRow> blame;                 // sorted by port, bank, by (ports first), without zero rows
+  EnergyStatistics energy;                     // of the memories
   std::optional<ComputerStatistics> computer;  // nullopt: a board without a computer
   area::Area area;                             // area of the core
   std::vector<std::string> failed;  // identities that do not hold, each with both sides; empty in a valid run

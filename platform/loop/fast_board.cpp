@@ -92,8 +92,8 @@ void FastBoard::stalled(std::uint64_t cycles) {
   failed(fmt::format("no slot consumed and no result written for {} cycles; {}", cycles, frames_.waits()));
 }
 
-BoardCounters FastBoard::counters() const {
-  BoardCounters counters = counters_of(frames_, arbitration_);
+BoardCounters FastBoard::counters(std::uint64_t now_ps) const {
+  BoardCounters counters = counters_of(frames_, arbitration_, &host_port_, clock_.edge_at_or_after(now_ps));
   for (std::size_t bank = 0; bank < banks_.size(); ++bank)
     counters.banks[bank].accesses += direct_accesses(bank);
   return counters;

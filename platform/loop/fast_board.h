@@ -53,8 +53,8 @@ class FastBoard : private fpga::LocalBusControl::Core,
   // Advances the running frame to `now_ps`, for observers. See StereoCore::catch_up().
   void catch_up(std::uint64_t now_ps);
 
-  // To be called between two frames.
-  BoardCounters counters() const;
+  // To be called between two frames, at this time.
+  BoardCounters counters(std::uint64_t now_ps) const;
 
  private:
   void route(const fpga::HostRoute& route) override { fast_core_.route(route); }

@@ -26,7 +26,7 @@ using runs::Explanation;
 
 constexpr std::size_t kMostBlames = 5;
 constexpr double kLeastGainPercent = 0.1;  // a change that gains or loses less is not in the table
-constexpr double kLeastSavedPercent = 1;   // of the FPGA: a change that saves as much is in the table anyway
+constexpr double kLeastSavedPercent = 1;  // of the FPGA or the energy: a change that saves it is there anyway
 
 constexpr const char* kBankLess = "a bank less";
 
@@ -106,7 +106,7 @@ std::string blames_text(const Explanation& explanation) {
 }
 
 // The line of a change. Empty if the change affects neither the rate nor whether pixels are lost, and saves
-// neither a part of the FPGA nor a bank.
+// neither a part of the FPGA, nor energy, nor a bank.
 std::string line_of(const Explanation::Step& found, const BoardConfig& board,
                     const Explanation& explanation) {
   const explore::KnobStep& step = *found.step;
@@ -114,16 +114,18 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
   const area::Area its = platform::area_of(step.board);
   const area::Area before = platform::area_of(board);
   const double slices_percent = its.slices_percent - before.slices_percent;
+  const double energy_percent = explanation.energy_percent(found);
   const double saved = std::min({slices_percent, its.block_rams_percent - before.block_rams_percent,
-                                 its.multipliers_percent - before.multipliers_percent});
+                                 its.multipliers_percent - before.multipliers_percent, energy_percent});
   const bool changes_loss = found.rate.loses_pixels() != now.loses_pixels();
   if (std::abs(explanation.gained_percent(found)) < kLeastGainPercent && !changes_loss &&
       saved > -kLeastSavedPercent && step.knob != kBankLess)
     return "";
   const double gained = found.rate.frames_per_second - now.frames_per_second;
   std::string text = fmt::format(
-      "  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>6} {:>4}  {}{}: {} -> {}", found.rate.frames_per_second,
+      "  {:>8.3f} {:>+8.3f} {:>+8.2f} {:>+7.2f} {:>6} {:>4}  {}{}: {} -> {}", found.rate.frames_per_second,
       files::without_minus_zero(gained, 3), files::without_minus_zero(explanation.gained_percent(found), 2),
+      files::without_minus_zero(energy_percent, 2),
       its.slices == before.slices ? "0"
                                   : fmt::format("{:+.2f}", files::without_minus_zero(slices_percent, 2)),
       signed_text(its.block_rams - before.block_rams), step.knob, step.changes_disparities ? " *" : "",
@@ -138,7 +140,7 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
   if (gained != 0 && std::abs(gained) <= found.rate.uncertainty + now.uncertainty) text += "  ~";
   text += '\n';
   if (step.sets == std::vector<std::string>{step.knob + "=" + step.to}) return text;
-  for (const std::string& set : step.sets) text += fmt::format("{:41}--set {}\n", "", files::shell_word(set));
+  for (const std::string& set : step.sets) text += fmt::format("{:49}--set {}\n", "", files::shell_word(set));
   return text;
 }
 
@@ -148,9 +150,11 @@ std::string changes_text(const BoardConfig& board, const Explanation& explanatio
   std::string text = fmt::format(
       "one change at a time: {} boards simulated; *: the disparities change too{}\n"
       "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n"
-      "  {:>8} {:>8} {:>8} {:>6} {:>4}  change: from -> to\n",
-      explanation.simulated(), explanation.camera() ? "; ~: within the uncertainty" : "", "frames/s",
-      "gained", "%", "FPGA %", "RAMs");
+      "now {:.3f} mJ a frame; mJ %: the change of that, of {}\n"
+      "  {:>8} {:>8} {:>8} {:>7} {:>6} {:>4}  change: from -> to\n",
+      explanation.simulated(), explanation.camera() ? "; ~: within the uncertainty" : "",
+      explanation.now().memory_mj, platform::kEnergyIsOf, "frames/s", "gained", "%", "mJ %", "FPGA %",
+      "RAMs");
   const std::string interruption = explanation.interruption();
   const auto& steps = explanation.steps();
   if (!interruption.empty()) {
@@ -245,9 +249,9 @@ void add_explain(Commands& commands) {
       "The board is simulated, and then once more for each change: one key one step up or down, such as a\n"
       "cycle, a MHz, a place in a queue, a word of a burst, a buffer or a bank. The changes are sorted by\n"
       "their frame rate, and those that lose pixels are last. FPGA % (of the slices) and RAMs are what a\n"
-      "change takes of the FPGA, or frees. A bank more is the best way to give one buffer a new bank of its\n"
-      "own, a bank less the best way to move all buffers of one bank into another. The size of the images,\n"
-      "the depth of banks and the device stay.");
+      "change takes of the FPGA, or frees, mJ % what it does to the energy of a frame. A bank more is the\n"
+      "best way to give one buffer a new bank of its own, a bank less the best way to move the buffers of\n"
+      "one bank into another. The size of the images, the depth of banks and the device stay.");
 }
 
 }  // namespace stereotlm::cli

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -158,9 +159,8 @@ Json assignments(const Wrap& wrap) {
   const Json paths = definitions();
   for (const auto& [path, unused] : paths.items()) {
     if (path.rfind(kBankPath, 0) == 0) {
-      const std::string rest = path.substr(kBankPath.size());
-      const std::string pattern =
-          fmt::format("^ssram[.]banks[.]{}{}$", kBankNamePattern, rest.empty() ? "" : "[.]" + rest.substr(1));
+      const std::string rest = std::regex_replace(path.substr(kBankPath.size()), std::regex("[.]"), "[.]");
+      const std::string pattern = fmt::format("^ssram[.]banks[.]{}{}$", kBankNamePattern, rest);
       schema["patternProperties"][pattern] = wrap(reference(path));
     } else {
       const bool is_section = platform::find_key(path) == nullptr && path != kBanksPath;

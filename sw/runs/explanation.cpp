@@ -285,6 +285,8 @@ void add_changes(const Explanation& explanation, Json& document) {
     change["frames_per_second"] = rate;
     change["gained_frames_per_second"] = rate - now;
     change["gained_percent"] = explanation.gained_percent(found);
+    change["memory_mj_per_frame"] = found.rate.memory_mj;
+    change["memory_mj_changed_percent"] = explanation.energy_percent(found);
     change["changes_disparities"] = step.changes_disparities;
     change["loses_pixels"] = found.rate.loses_pixels();
     change["sets"] = step.sets;
@@ -368,11 +370,12 @@ std::string Explanation::interruption() const {
 Explanation::Rate Explanation::rate_of(std::uint64_t number) {
   try {
     const explore::StoredRow& row = batch_.row_of(points_.point(number));
-    if (!run_.camera) return {row.real("frames_per_second.core"), 0, 0, ""};
+    const double energy = row.real("energy.memory_mj_per_frame");
+    if (!run_.camera) return {row.real("frames_per_second.core"), 0, 0, energy, ""};
     return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"),
-            row.lost_pixels(), ""};
+            row.lost_pixels(), energy, ""};
   } catch (const explore::PointFailed& failed) {
-    return {0, 0, 0, failed.what()};
+    return {0, 0, 0, 0, failed.what()};
   }
 }
 
@@ -567,6 +570,7 @@ Json explanation_document(const platform::BoardConfig& board, const Explanation&
       {"bound", {{"frames_per_second", row.real(of)}, {"limited_by", row.text(of + "_limited_by")}}}};
   if (explanation.camera()) document["uncertainty_frames_per_second"] = now.uncertainty;
   document["limited_by"] = limiter_text(explanation);
+  document["memory_mj_per_frame"] = now.memory_mj;
   const Budget& budget = explanation.budget();
   document["time_percent"] = {{"bound", budget.bound}, {"queues", budget.queues}, {"waits", budget.waits}};
   for (const auto& [why, share] : budget.core_waits) document["time_percent"]["core_waits"][why] = share;

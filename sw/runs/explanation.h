@@ -53,6 +53,7 @@ class Explanation {
     double frames_per_second = 0;  // of the core; of the whole computer the steady rate
     double uncertainty = 0;        // of the steady rate
     std::int64_t lost_pixels = 0;  // by captures
+    double memory_mj = 0;          // energy of the memories for each frame
     std::string failure;           // the reason if the run has failed; else empty
     bool loses_pixels() const { return lost_pixels > 0; }
   };
@@ -115,6 +116,10 @@ class Explanation {
   }
   double gained_percent(const Step& step) const {
     return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
+  }
+  // The change of the energy of the memories, in percent; 0 if the board's memories take none.
+  double energy_percent(const Step& step) const {
+    return now_.memory_mj == 0 ? 0 : 100 * (step.rate.memory_mj / now_.memory_mj - 1);
   }
   // Who stalls for whom, the most cycles first.
   const std::vector<platform::BlameRow>& blames() const { return blames_; }

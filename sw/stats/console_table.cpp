@@ -98,14 +98,27 @@ std::string bank_lines(const platform::Statistics& statistics, double clock_mhz)
   std::size_t width = 12;
   const auto name_of = [](const auto& bank) { return shortened(platform::bank_text(bank.name)); };
   for (const auto& bank : statistics.banks) width = std::max(width, name_of(bank).size());
-  std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9}\n", "bank", width, "reads", "writes",
-                                 "busy %", "MB/s", "peak MB/s");
+  std::string text = fmt::format("{:<{}} {:>14} {:>14} {:>7} {:>9} {:>9} {:>8}\n", "bank", width, "reads",
+                                 "writes", "busy %", "MB/s", "peak MB/s", "energy %");
   for (const auto& bank : statistics.banks) {
-    text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f}\n", name_of(bank), width, bank.reads,
-                        bank.writes, 100 * bank.utilization, bank.megabytes_per_second,
-                        bank.ports * kBytesPerWord * clock_mhz);
+    text += fmt::format("{:<{}} {:>14} {:>14} {:>7.2f} {:>9.2f} {:>9.2f} {:>8}\n", name_of(bank), width,
+                        bank.reads, bank.writes, 100 * bank.utilization, bank.megabytes_per_second,
+                        bank.ports * kBytesPerWord * clock_mhz,
+                        bank.energy ? fmt::format("{:.2f}", bank.energy->energy_percent) : "-");
   }
   return text;
+}
+
+std::string energy_lines(const platform::EnergyStatistics& energy) {
+  std::vector<std::string> buffers;
+  for (const platform::BufferStatistics& buffer : energy.buffers) {
+    if (buffer.bytes > 0)
+      buffers.push_back(fmt::format("{} {:.3g}", buffer.name, buffer.megabytes_per_frame));
+  }
+  return fmt::format("{:<12} {:>10.3f} mJ a frame   {:.1f} mW, {}\n", "energy", energy.memory_mj_per_frame,
+                     energy.memory_mw, platform::kEnergyIsOf) +
+         fmt::format("{:<12} {:>10.3f} MB a frame\n  {}\n", "traffic", energy.megabytes_per_frame,
+                     fmt::join(buffers, ", "));
 }
 
 std::string wait_lines(const platform::Statistics& statistics,
@@ -167,7 +180,8 @@ std::string console_table(const platform::Statistics& statistics, const platform
                           const TableExtras& extras) {
   std::string text = rate_lines(statistics) + computer_rate_lines(statistics) +
                      bank_lines(statistics, board.fpga.clock_mhz) +
-                     wait_lines(statistics, extras.waitless_frames_per_second);
+                     wait_lines(statistics, extras.waitless_frames_per_second) +
+                     energy_lines(statistics.energy);
   if (statistics.computer) text += computer_lines(*statistics.computer, board);
   if (extras.answered_percent) {
     text += fmt::format("{:<12} in {:.2f} % of the pixels of the last frame\n", "disparities",

@@ -73,8 +73,9 @@ std::string lost_pixels_text(std::uint64_t pixels);
 
 // The table that a run of this board prints:
 // - Frames per second and their bounds.
-// - For each bank its traffic, and the share of the cycles in which it is busy (`busy %`).
+// - For each bank its traffic, the share of cycles in which it is busy (`busy %`), and that of the energy.
 // - Who waits longest at which bank for whom, and the frame rate that all waits cost.
+// - The energy of the memories and the traffic of the buffers, for each frame.
 // - For a computer: each PCI master's traffic, the share of the clocks that its data takes (`data %`) and its
 //   mean wait for the bus; the use of both buses; dropped camera frames by reason; the latency.
 // - How much of the last frame is answered, and the accuracy, if given.

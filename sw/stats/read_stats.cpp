@@ -240,6 +240,7 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
   statistics.banks.resize(board.banks.size());
   statistics.ports.resize(platform::core_ports(board).size());
   platform::derive_figures(board, statistics);
+  platform::derive_energy(board, statistics);
   check_names(reader, board, statistics);
   const Json right = stats_document(statistics, read_accuracy(reader));
   reader.expect(right);
@@ -247,6 +248,7 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
   platform::Audit audit;
   platform::audit_core(statistics, audit);
   platform::audit_accesses(board, statistics, audit);
+  platform::audit_energy(statistics, audit);
   if (statistics.computer) platform::audit_computer(*statistics.computer, audit);
   reader.check(audit);
   return statistics;

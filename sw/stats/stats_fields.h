@@ -29,6 +29,27 @@ namespace stereotlm::platform {
 using stats::Field;
 using stats::Part;
 
+constexpr auto fields_of(const BankEnergyStatistics* /*type*/) {
+  using Bank = BankEnergyStatistics;
+  return std::tuple(
+      Field{"accesses", &Bank::accesses}, Field{"rows_opened", &Bank::rows_opened, "only of sdram"},
+      Field{"refreshes", &Bank::refreshes, "only of sdram"}, Field{"energy_pj", &Bank::energy_pj},
+      Field{"energy_percent", &Bank::energy_percent, "of all banks", stats::percentage});
+}
+
+constexpr auto fields_of(const BufferStatistics* /*type*/) {
+  return std::tuple(Field{"name", &BufferStatistics::name}, Field{"bytes", &BufferStatistics::bytes},
+                    Field{"megabytes_per_frame", &BufferStatistics::megabytes_per_frame});
+}
+
+constexpr auto fields_of(const EnergyStatistics* /*type*/) {
+  using Energy = EnergyStatistics;
+  return std::tuple(
+      Field{"time_ps", &Energy::time_ps}, Field{"memory_pj", &Energy::memory_pj},
+      Field{"memory_mj_per_frame", &Energy::memory_mj_per_frame}, Field{"memory_mw", &Energy::memory_mw},
+      Field{"megabytes_per_frame", &Energy::megabytes_per_frame}, Field{"buffers", &Energy::buffers});
+}
+
 constexpr auto fields_of(const BankStatistics* /*type*/) {
   using Bank = BankStatistics;
   return std::tuple(
@@ -38,7 +59,8 @@ constexpr auto fields_of(const BankStatistics* /*type*/) {
       Field{"refresh_cycles", &Bank::refresh_cycles, "only of sdram"},
       Field{"idle_cycles", &Bank::idle_cycles}, Field{"contended_cycles", &Bank::contended_cycles},
       Field{"utilization", &Bank::utilization, "", stats::share},
-      Field{"megabytes_per_second", &Bank::megabytes_per_second});
+      Field{"megabytes_per_second", &Bank::megabytes_per_second},
+      Field{"energy", &Bank::energy, "only of a bank that holds a buffer"});
 }
 
 constexpr auto fields_of(const PortStatistics* /*type*/) {
@@ -121,8 +143,8 @@ constexpr auto fields_of(const Statistics* /*type*/) {
       Field{"bound", &Statistics::bound,
             "frames per second; system: of the frames of steady, without it of those delivered"},
       Field{"banks", &Statistics::banks}, Field{"ports", &Statistics::ports},
-      Field{"blame", &Statistics::blame}, stats::Merged{&Statistics::computer},
-      Field{"area", &Statistics::area},
+      Field{"blame", &Statistics::blame}, Field{"energy", &Statistics::energy, kEnergyIsOf},
+      stats::Merged{&Statistics::computer}, Field{"area", &Statistics::area},
       Field{"failed", &Statistics::failed, "identities that do not hold",
             [] { return stats::list_of(stats::text(), 1); }, stats::Presence::kUnlessEmpty});
 }

@@ -1,5 +1,7 @@
 #include "tests/support/board_of_random.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -65,6 +67,12 @@ std::vector<platform::BankConfig> bank_configs(const PlainCycleInput& input) {
     banks.push_back({bank_name(static_cast<int>(banks.size())), 0, kind_of(bank.kind),
                      turns ? bank.turnaround_cycles : 0});
     if (bank.kind == PlainBankKind::kSdram) banks.back().sdram = timing_of(bank.sdram);
+    if (!bank.energy) continue;
+    banks.back().standby_mw = bank.energy->standby_uw / 1e3;
+    banks.back().access_pj = bank.energy->access_pj;
+    if (bank.kind != PlainBankKind::kSdram) continue;
+    banks.back().row_pj = bank.energy->row_pj;
+    banks.back().refresh_pj = bank.energy->refresh_pj;
   }
   const auto add = [&](const PlainBuffer& buffer, int row_words) {
     for (std::size_t part = 0; part < buffer.banks.size(); ++part)
@@ -160,6 +168,7 @@ platform::BoardConfig board_config(const RandomBoard& board) {
     config.matcher.filter =
         kernels::FilterKernel{board.filter->size, board.filter->weights, board.filter->shift};
   config.matcher.lr_tolerance = board.lr_tolerance;
+  config.fpga.clock_mhz = value_of(board.clock_mhz);
   config.matcher.cost = cost_of(board.cost);
   return config;
 }
@@ -197,6 +206,18 @@ platform::BoardConfig board_config(const RandomComputer& computer) {
   board.bridge.posted_words = input.posted_words;
   board.fpga.clock_mhz = value_of(input.board.clock_mhz);
   return board;
+}
+
+std::string energy_text(const platform::Statistics& run) {
+  std::string text;
+  for (const platform::BankStatistics& bank : run.banks) {
+    if (const auto& energy = bank.energy)
+      text += fmt::format("{} {} {} {} {}\n", bank.name, energy->accesses, energy->rows_opened.value_or(0),
+                          energy->refreshes.value_or(0), energy->energy_pj);
+  }
+  for (const platform::BufferStatistics& buffer : run.energy.buffers)
+    text += fmt::format("{} {}\n", buffer.name, buffer.bytes);
+  return text + fmt::format("all {} {}\n", run.energy.time_ps, run.energy.memory_pj);
 }
 
 }  // namespace stereotlm::test

@@ -3,6 +3,7 @@
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "platform/figures/statistics.h"
 #include "tests/support/plain_cycle_loop.h"
 #include "tests/support/random_board.h"
 #include "tests/support/random_computer.h"
@@ -22,5 +23,8 @@ host::StereoPair stereo_pair(const RandomBoard& board, int frame);
 host::StereoPair stereo_pair(const RandomBoard& board, const PicturePair& pictures);
 
 platform::BoardConfig board_config(const RandomComputer& computer);
+
+// What plain_energy() says of the same run.
+std::string energy_text(const platform::Statistics& run);
 
 }  // namespace stereotlm::test

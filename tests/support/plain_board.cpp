@@ -155,8 +155,8 @@ ReferenceJointTable PlainBoard::joint_table() {
           {middle(PlainMiddle::kRightX), middle(PlainMiddle::kRightY)}};
 }
 
-PlainCycleResult PlainBoard::core_result() const {
-  PlainCycleResult result = core_.result();
+PlainCycleResult PlainBoard::core_result() {
+  PlainCycleResult result = core_.result(static_cast<std::int64_t>(clock_.first_edge(events_.now())));
   result.frame_cycles = frame_cycles_;
   return result;
 }

@@ -51,7 +51,7 @@ class PlainBoard {
   void start_frame();
 
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
-  PlainCycleResult core_result() const;
+  PlainCycleResult core_result();  // up to now, while no frame runs
 
  private:
   struct HostWord {

@@ -27,6 +27,15 @@ std::string rows_of(const PlainCycleInput& input, std::size_t first_strip, std::
   return std::to_string(first_strip * rows) + "," + std::to_string(end - 1);
 }
 
+__extension__ typedef __int128 Wide;
+
+// The table of 9.1.
+PlainEnergy typical(PlainBankKind kind) {
+  if (kind == PlainBankKind::kQdr) return {360'000, 539, 0, 0};
+  if (kind == PlainBankKind::kSdram) return {181'500, 2772, 19866, 61215};
+  return {264'000, 7920, 0, 0};
+}
+
 }  // namespace
 
 std::string plain_rows_csv(const PlainCycleInput& input, const std::vector<std::vector<PlainStrip>>& frames) {
@@ -86,6 +95,28 @@ std::string plain_conflicts_csv(const PlainCycleInput& input, const std::vector<
           sum);
     }
   }
+  return text.str();
+}
+
+std::string plain_energy(const PlainCycleInput& input, const PlainCycleResult& result,
+                         const std::vector<PlainBankWork>& work, PlainTime time_ps) {
+  std::ostringstream text;
+  std::uint64_t sum = 0;
+  for (std::size_t bank = 0; bank < input.banks.size(); ++bank) {
+    if (!result.used_banks[bank]) continue;
+    const PlainEnergy energy = input.banks[bank].energy.value_or(typical(input.banks[bank].kind));
+    const auto& [accesses, rows_opened, refreshes] = work[bank];
+    const Wide standby = Wide{energy.standby_uw} * static_cast<Wide>(time_ps);  // 10^-18 J
+    const auto pj = static_cast<std::uint64_t>(
+        standby / 1'000'000 + (standby % 1'000'000 >= 500'000 ? 1 : 0) + Wide{energy.access_pj} * accesses +
+        Wide{energy.row_pj} * rows_opened + Wide{energy.refresh_pj} * refreshes);
+    sum += pj;
+    text << "bank" << bank << " " << accesses << " " << rows_opened << " " << refreshes << " " << pj << "\n";
+  }
+  std::size_t buffer = 0;
+  for (const char* name : {"left_image", "right_image", "disparity", "left_lut", "right_lut"})
+    text << name << " " << 4 * result.buffer_accesses[buffer++] << "\n";
+  text << "all " << time_ps << " " << sum << "\n";
   return text.str();
 }
 

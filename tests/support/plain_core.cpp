@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
+#include <map>
 #include <utility>
 
 namespace stereotlm::test {
@@ -62,6 +64,13 @@ class BankAndArbiter {
     return outcome;
   }
 
+  // The refreshes before cycle `end` begin, if nobody requests in the cycles before it.
+  void pass(Cycle end) {
+    for (; next_ < end; ++next_) refresh_if_due(next_);
+  }
+
+  const PlainBankWork& work() const { return work_; }  // up to now, without accesses
+
  private:
   struct Wait {
     Cycle cycles = 0;           // number of consecutive cycles with a request and without a grant
@@ -76,7 +85,7 @@ class BankAndArbiter {
   // The rules in their order: refresh, winner, its row, its turnaround. Only sdram has refreshes and rows.
   std::optional<std::size_t> outcome_of(const std::vector<std::size_t>& ports,
                                         const std::vector<Request>& requests, Cycle now) {
-    for (; next_ <= now; ++next_) refresh_if_due(next_);  // also in cycles without requests
+    pass(now + 1);
     if (now < busy_until_) return busy_with_;
     if (ports.empty()) return std::nullopt;
     const std::size_t winner =
@@ -122,6 +131,7 @@ class BankAndArbiter {
       return;
     if (now < next_refresh_ * sdram.refresh_interval_cycles) return;
     ++next_refresh_;
+    ++work_.refreshes;
     const bool any_open =
         std::any_of(open_rows_.begin(), open_rows_.end(), [](const auto& open) { return open.has_value(); });
     busy_until_ = now + sdram.refresh_cycles + (any_open ? sdram.precharge_cycles : 0);
@@ -135,6 +145,7 @@ class BankAndArbiter {
     const std::uint64_t row_of_word = word / static_cast<std::uint64_t>(sdram.row_words);
     std::optional<std::uint64_t>& open = open_rows_[row_of_word % open_rows_.size()];
     if (open == row_of_word) return;
+    ++work_.rows_opened;
     busy_until_ = now + sdram.activate_cycles + (open ? sdram.precharge_cycles : 0);
     busy_with_ = row();
     open = row_of_word;
@@ -152,6 +163,7 @@ class BankAndArbiter {
   Cycle busy_until_ = 0;     // with a refresh or an opening
   std::size_t busy_with_ = 0;
   std::vector<std::optional<std::uint64_t>> open_rows_;  // [internal bank]
+  PlainBankWork work_;
 };
 
 // The figures of a frame, by their letters in the contract; P and G are of section 8 (lanes).
@@ -435,6 +447,9 @@ class PlainCore::Cycles {
     result_.names = plain_names(input.lanes);
     result_.ports.resize(ports_);
     result_.banks.resize(input.banks.size());
+    result_.work.resize(input.banks.size());
+    result_.counted_work.resize(input.banks.size());
+    note_buffers();
     const int strips = (input.height + input.rows - 1) / input.rows;
     groups_ = static_cast<std::size_t>(input.width / 4);
     result_.tiles.resize(1 + static_cast<std::size_t>(strips) * groups_);
@@ -489,7 +504,16 @@ class PlainCore::Cycles {
     return host_granted;
   }
 
-  const PlainCycleResult& result() const { return result_; }
+  PlainCycleResult result(Cycle end) {
+    PlainCycleResult result = result_;
+    for (std::size_t bank = 0; bank < banks_.size(); ++bank) {
+      BankAndArbiter& first = banks_[bank].front().arbiter;  // an sdram has one
+      first.pass(end);
+      result.work[bank].rows_opened = first.work().rows_opened;
+      result.work[bank].refreshes = first.work().refreshes;
+    }
+    return result;
+  }
 
  private:
   struct Frame {
@@ -507,6 +531,31 @@ class PlainCore::Cycles {
     BankAndArbiter arbiter;
     std::vector<std::size_t> asked_by;  // in this cycle
   };
+
+  // Where each buffer, or part of one that has rows, begins in its bank.
+  void note_buffers() {
+    buffer_at_.resize(input_.banks.size());
+    std::vector<PlainParts> left_lut = {places_.left_lut};
+    std::vector<PlainParts> right_lut = {input_.joint_tables ? PlainParts{} : places_.right_lut};
+    std::size_t buffer = 0;
+    for (const auto* list :
+         {&places_.left_image, &places_.right_image, &places_.disparity, &left_lut, &right_lut}) {
+      for (const PlainParts& parts : *list) {
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+          if (plain_rows(parts.size(), part, input_.height) == 0) continue;
+          buffer_at_[static_cast<std::size_t>(parts[part].bank)][parts[part].word] = buffer;
+        }
+      }
+      ++buffer;
+    }
+    for (const auto& buffers : buffer_at_) result_.used_banks.push_back(!buffers.empty());
+  }
+  void note_work(const PlainWord& at) {
+    const auto bank = static_cast<std::size_t>(at.bank);
+    ++result_.work[bank].accesses;
+    if (frame_) ++result_.counted_work[bank].accesses;
+    ++result_.buffer_accesses[std::prev(buffer_at_[bank].upper_bound(at.word))->second];
+  }
 
   std::size_t lut_group(std::size_t side, std::size_t p) const { return side * lanes_ + p; }
   std::size_t pixel_group(std::size_t side, std::size_t p) const { return (2 + side) * lanes_ + p; }
@@ -607,12 +656,19 @@ class PlainCore::Cycles {
       for (BankPort& bank_port : banks_[bank]) {
         const std::vector<std::size_t>& asked_by = bank_port.asked_by;
         if (asked_by.size() >= 2) is_contended = true;
+        bank_port.arbiter.pass(now);
+        const PlainBankWork before = bank_port.arbiter.work();
         const std::optional<std::size_t> outcome = bank_port.arbiter.decide(asked_by, requests_, now);
+        if (frame_) {
+          result_.counted_work[bank].rows_opened += bank_port.arbiter.work().rows_opened - before.rows_opened;
+          result_.counted_work[bank].refreshes += bank_port.arbiter.work().refreshes - before.refreshes;
+        }
         if (!outcome) continue;
         if (*outcome < ports_) {
           is_busy = true;
           granted_[*outcome] = true;
           ++(requests_[*outcome].direction == Direction::kRead ? states.reads : states.writes);
+          note_work(requests_[*outcome].at);
           if (frame_) note_access(*outcome, bank);
         } else {
           cause = outcome;
@@ -665,8 +721,9 @@ class PlainCore::Cycles {
   std::vector<Request> requests_;  // [port], in this cycle
   std::vector<bool> granted_;
   PlainTraffic traffic_ = PlainTraffic::kReadBack;
-  std::size_t groups_ = 0;      // of four columns, in a strip
-  std::optional<Frame> frame_;  // that runs, until its last result write
+  std::vector<std::map<std::uint64_t, std::size_t>> buffer_at_;  // [bank], by its first word
+  std::size_t groups_ = 0;                                       // of four columns, in a strip
+  std::optional<Frame> frame_;                                   // that runs, until its last result write
   PlainCycleResult result_;
 };
 
@@ -677,7 +734,7 @@ bool PlainCore::runs() const { return cycles_->runs(); }
 bool PlainCore::step(std::int64_t now, const std::optional<PlainHostRequest>& host) {
   return cycles_->step(now, host);
 }
-PlainCycleResult PlainCore::result() const { return cycles_->result(); }
+PlainCycleResult PlainCore::result(std::int64_t end) { return cycles_->result(end); }
 
 std::vector<std::string> plain_names(int lanes) {
   std::vector<std::string> names;

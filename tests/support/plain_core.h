@@ -41,6 +41,13 @@ struct PlainBankStates {
   std::uint64_t contended = 0;
 };
 
+// What takes energy (contract 9.2).
+struct PlainBankWork {
+  std::uint64_t accesses = 0;
+  std::uint64_t rows_opened = 0;
+  std::uint64_t refreshes = 0;
+};
+
 // The cause of a lost cycle.
 struct PlainBlame {
   std::size_t port = 0;  // the victim
@@ -95,9 +102,14 @@ struct PlainCycleResult {
   std::vector<std::vector<PlainStrip>> strips;  // of each frame
   std::vector<PlainTile> tiles;                 // sums over the frames
   std::uint64_t counted_cycles = 0;
-  std::vector<std::string> names;             // of the ports, then turnaround, row, refresh
-  std::vector<PlainPortStates> ports;         // by their numbers
-  std::vector<PlainBankStates> banks;         // in the order of PlainCycleInput::banks
+  std::vector<std::string> names;           // of the ports, then turnaround, row, refresh
+  std::vector<PlainPortStates> ports;       // by their numbers
+  std::vector<PlainBankStates> banks;       // in the order of PlainCycleInput::banks
+  std::vector<PlainBankWork> counted_work;  // likewise, in the counted cycles
+  std::vector<PlainBankWork> work;          // in all cycles
+  std::vector<bool> used_banks;             // those that hold a word of a buffer
+  // In all cycles: to left_image, right_image, disparity, left_lut, right_lut.
+  std::array<std::uint64_t, 5> buffer_accesses{};
   std::map<PlainBlame, std::uint64_t> blame;  // without zero rows
 };
 
@@ -121,8 +133,8 @@ class PlainCore {
   // Steps cycle number `now`, greater than the last one. Cycles without requests may be left out. True if the
   // host's word is granted.
   bool step(std::int64_t now, const std::optional<PlainHostRequest>& host);
-  // All but `hang` and `frame_cycles`, which the caller fills in.
-  PlainCycleResult result() const;
+  // All but `hang` and `frame_cycles`, which the caller fills in. Between two frames, up to cycle `end`.
+  PlainCycleResult result(std::int64_t end = 0);
 
  private:
   class Cycles;

@@ -31,10 +31,19 @@ struct PlainSdram {
   int refresh_cycles = 3;
 };
 
+// Contract 9.1. The last two are of kSdram.
+struct PlainEnergy {
+  int standby_uw = 0;
+  int access_pj = 0;
+  int row_pj = 0;
+  int refresh_pj = 0;
+};
+
 struct PlainBank {
   PlainBankKind kind = PlainBankKind::kZbtPipelined;
-  int turnaround_cycles = 0;  // for kSyncBurst; has no effect otherwise
-  PlainSdram sdram{};         // for kSdram; has no effect otherwise
+  int turnaround_cycles = 0;               // for kSyncBurst; has no effect otherwise
+  PlainSdram sdram{};                      // for kSdram; has no effect otherwise
+  std::optional<PlainEnergy> energy = {};  // nullopt: that of the kind
 };
 
 // A buffer names its bank by the index in `banks`; the rows of a striped one lie in two or more in turn.

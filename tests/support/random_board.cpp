@@ -384,6 +384,17 @@ void draw_lanes(RandomBoard& board, SplitMix64 random) {
   board.lanes = std::min(board.lanes, board.window + board.rows - 1);
 }
 
+void draw_energy(RandomBoard& board, SplitMix64 random) {
+  board.clock_mhz = {random.between(1'000, 200'000), 1'000};
+  for (PlainBank& bank : board.banks) {
+    if (random.chance(50)) continue;
+    bank.energy = {random.mostly_small(0, 300'000, 10'000'000), random.mostly_small(0, 9'000, 1'000'000)};
+    if (bank.kind != PlainBankKind::kSdram) continue;
+    bank.energy->row_pj = random.between(0, 1'000'000);
+    bank.energy->refresh_pj = random.between(0, 1'000'000);
+  }
+}
+
 void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
   if (knobs.large_images) draw_large_image(board, random_of(board, 1));
   if (knobs.units) draw_units(board, random_of(board, 2));
@@ -395,6 +406,7 @@ void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
   if (knobs.sdram) draw_sdram_banks(board, random_of(board, 8));
   if (knobs.stripes) draw_stripes(board, random_of(board, 9));
   if (knobs.lanes) draw_lanes(board, random_of(board, 10));
+  if (knobs.energy) draw_energy(board, random_of(board, 11));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/plain_clock.h"
 #include "tests/support/plain_cycle_loop.h"
 #include "tests/support/reference_arithmetic.h"
 
@@ -39,6 +40,7 @@ struct RandomBoard : PlainCycleInput {
   std::optional<ReferenceKernel> filter;  // nullopt: none
   std::optional<int> lr_tolerance;        // nullopt: off
   ReferenceCost cost;
+  PlainNumber clock_mhz{40, 1};       // of computers another one
   int frames = 0;                     // 1..4
   std::vector<PicturePair> pictures;  // 1..frames pairs; frame f shows pair f mod length
 
@@ -67,13 +69,14 @@ struct RandomKnobs {
   bool sdram = false;
   bool stripes = false;  // and up to 8 banks more
   bool lanes = false;
+  bool energy = false;  // of section 9: banks with figures of their own, and another clock
 
   // Those of section 7.
   static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true, true, true}; }
-  // Those of sections 7 and 8: all that boards can have.
+  // Those of sections 7 to 9: all that boards can have.
   static constexpr RandomKnobs with_section_8() {
     RandomKnobs knobs = all();
-    knobs.lanes = knobs.sdram = knobs.stripes = true;
+    knobs.lanes = knobs.sdram = knobs.stripes = knobs.energy = true;
     return knobs;
   }
 };

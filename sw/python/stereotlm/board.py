@@ -474,8 +474,13 @@ class Run:
         return self.statistics["frames_per_second"]
 
     @property
+    def energy(self):
+        """Energy and traffic of the memories alone: without FPGA, PCI, pins and controllers."""
+        return self.statistics["energy"]
+
+    @property
     def banks(self):
-        """A table of the accesses and cycles of each bank."""
+        """A table of the accesses, cycles and energy of each bank."""
         return _table(self.statistics["banks"])
 
     @property

@@ -318,6 +318,10 @@ Lines subtitle_of(const ChartView& view) {
   }
   text += stats::rate_remark(0, 0, platform::lost_pixels(*view.run));
   lines.push_back(fmt::format("{}; {}", text, count_of(static_cast<int>(view.run->frames), "frame")));
+  const platform::EnergyStatistics& energy = view.run->energy;
+  lines.push_back(fmt::format("{} mJ and {} MB a frame, {} mW: {}", measured(energy.memory_mj_per_frame),
+                              measured(energy.megabytes_per_frame), measured(energy.memory_mw),
+                              platform::kEnergyIsOf));
   lines.push_back(
       fmt::format("bound {} frames/s{}, set by {}", rate_text(bound.system.value_or(bound.core)),
                   stats::whole_text(*view.run),
@@ -329,7 +333,7 @@ Lines subtitle_of(const ChartView& view) {
 Lines legend_of(const ChartView& view) {
   if (view.run == nullptr) return {"Numbers at the links: peak MB/s (million bytes/s)"};
   Lines lines = {"Links: MB/s (million bytes/s), width by MB/s",
-                 "Bars of a bank: % of cycles busy; words of buffers",
+                 "Bars of a bank: % of cycles busy; words of buffers; % mJ: of all banks",
                  "Colour: % of the peak of a link, % busy of a bank", "No number: nothing was moved",
                  "Thick outline: sets the bound of the frame rate"};
   if (!view.in_computer) {
@@ -588,10 +592,12 @@ class Chart {
     } else {
       const double busy = 100 * run_->banks[index].utilization;
       const std::string load = paint("fill", load_colour(busy, 100));
-      const Box shares{bar.x + 90, bar.y + 2.5, bar.width - 90, 8};
+      const std::optional<platform::BankEnergyStatistics>& energy = run_->banks[index].energy;
+      const std::string share = energy ? fmt::format(", {} % mJ", measured(energy->energy_percent)) : "";
+      const Box shares{bar.x + 134, bar.y + 2.5, bar.width - 134, 8};
       blocks_ += rect_element(bank.box, 4, load + " fill-opacity=\"0.2\"");
       draw_bank_line(bank.box, bank.box.y + kPadding, name, kName, rate);
-      blocks_ += text_element(fmt::format("busy {} %", measured(busy)), kNote, bar.x, bar.y, 90) +
+      blocks_ += text_element(fmt::format("busy {} %{}", measured(busy), share), kNote, bar.x, bar.y, 130) +
                  rect_element(shares, 2, paint("fill", "free")) +
                  rect_element({shares.x, shares.y, shares.width * busy / 100, 8}, 2, load) +
                  frame_element(shares, 2, "line", 0.75);

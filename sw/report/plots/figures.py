@@ -269,7 +269,8 @@ TITLES = {
     "matcher.window": "window n, pixels (of n x n)", "matcher.disparities": "disparities D",
     "matcher.rows": "rows of results at once", UNITS_USED: "column and window modules",
     BANKS_USED: "banks used by the allocation", "area.slices": "area, slices",
-    "area.slices_percent": "area, % of the slices"}
+    "area.slices_percent": "area, % of the slices",
+    "energy.memory_mj_per_frame": "energy of the memories, mJ a frame"}
 BOUNDS = {"frames_per_second.core": "bound.core", "frames_per_second.steady": "bound.system",
           "frames_per_second.system": "bound.system"}
 

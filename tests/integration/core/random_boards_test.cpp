@@ -58,12 +58,20 @@ std::string pixel_differences(const kernels::GrayImage& image, const std::vector
   return {};
 }
 
+std::string energy_differences(const RandomBoard& board, const PlainCycleResult& expected,
+                               const platform::Statistics& found) {
+  const PlainTime time_ps = PlainClock(board.clock_mhz).edge(expected.counted_cycles);
+  return differing_lines(plain_energy(cycle_input(board), expected, expected.counted_work, time_ps),
+                         energy_text(found));
+}
+
 // What differs between the model and the references; kHang if there is nothing to compare with.
 std::string compare_with_references(const RandomBoard& board, Fidelity fidelity) {
   const PlainCycleResult expected = run_plain_cycle_loop(cycle_input(board), board.frames, kMaxFrameCycles);
   if (expected.hang) return kHang;
   const PreloadedRun run = run_board(board, board_config(board), fidelity);
-  std::string text = differences(figures(run.statistics), figures(expected));
+  std::string text = differences(figures(run.statistics), figures(expected)) +
+                     energy_differences(board, expected, run.statistics);
   for (const std::string& failed : run.statistics.failed) text += failed + "\n";
   EXPECT_EQ(run.disparity.size(), static_cast<std::size_t>(board.frames));
   for (std::size_t frame = 0; fidelity != Fidelity::kTiming && frame < run.disparity.size(); ++frame) {
@@ -132,7 +140,8 @@ std::string compare_core_run_with_references(const RandomBoard& board, Fidelity 
   if (expected.hang) return kHang;
   const auto frames = static_cast<std::uint64_t>(board.frames);
   const platform::Statistics found = platform::run_core(board_config(board), board_tables(board), frames);
-  std::string text = differences(figures(found), figures(expected));
+  std::string text =
+      differences(figures(found), figures(expected)) + energy_differences(board, expected, found);
   for (const std::string& failed : found.failed) text += failed + "\n";
   EXPECT_EQ(found.fidelity, "fast");
   return text;

@@ -262,6 +262,9 @@ std::string problems_of(std::uint64_t seed, const test::RandomKnobs& knobs) {
     const bool with_pixels = fpga::has_pixels(fidelity);
     std::string text =
         test::differing_lines(figures_of(plain, input, with_pixels), figures_of(outcome, with_pixels));
+    text += test::differing_lines(
+        test::plain_energy(input.board.core, plain.core, plain.core.work, plain.deliveries.back().host_ps),
+        test::energy_text(outcome.statistics));
     for (const std::string& failed : outcome.statistics.failed) text += failed + '\n';
     return text + above_bound(board, tables, outcome.statistics);
   };

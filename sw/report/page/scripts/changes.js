@@ -40,7 +40,9 @@ export function addKnobs(page, run) {
         lines: [
           stepText(step),
           `${rate(step.frames_per_second)} frames/s, ${kind} (${gain})${lossText(step.loses_pixels)}`,
-          `takes ${priceText(step, board)}`, step.changes_disparities && 'changes the disparities',
+          `takes ${priceText(step, board)}`,
+          `${signed(step.memory_mj_changed_percent, n => fixed(n, 1))} % energy of a frame, memories alone`,
+          step.changes_disparities && 'changes the disparities',
           ...step.sets.map(set => `--set '${set}'`)
         ].filter(Boolean)
       }],
@@ -103,14 +105,14 @@ export function addKnobs(page, run) {
     numbers: () => [
         [
           'knob', 'from', 'to', 'frames_per_second', 'gain_percent', 'slices', 'block_rams', 'multipliers',
-          'banks_used', 'new_banks', 'changes_disparities', 'loses_pixels', 'sets'
+          'banks_used', 'new_banks', 'changes_disparities', 'loses_pixels', 'memory_mj_per_frame', 'sets'
         ],
         board.changes.map(
             step =>
                 [step.key, step.from, step.to, step.frames_per_second, step.gained_percent,
                  step.area.slices, step.area.block_rams, step.area.multipliers, step.banks_used,
                  step.new_banks, String(step.changes_disparities), String(step.loses_pixels),
-                 step.sets.join(' ')])]
+                 step.memory_mj_per_frame, step.sets.join(' ')])]
   });
 }
 

@@ -92,8 +92,11 @@ function trafficText(run, links) {
   return {
     title: `${bankText(name)} carries ${fixed(rate, 1)} MB/s, ${percent(shares[fullest])} of its peak`,
     numbers: () => [
-        ['from', 'to', 'megabytes_per_second', 'peak', 'percent'],
-        links.map(({from, to, rate: its, peak}) => [from, to, its, peak, 100 * its / peak])]
+        ['from', 'to', 'megabytes_per_second', 'peak', 'percent', 'energy_pj', 'energy_percent'],
+        [...links.map(({from, to, rate: its, peak}) => [from, to, its, peak, 100 * its / peak, null, null]),
+         ...run.stats.banks.filter(({energy}) => energy)
+             .map(({name: bank, energy: {energy_pj: pj, energy_percent: share}}) =>
+                      [bank, 'energy', null, null, null, pj, share])]]
   };
 }
 

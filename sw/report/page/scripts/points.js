@@ -7,7 +7,7 @@ export const kLostPixels = 'lost_pixels';  // the sum of both cameras
 // Rates and prices first, then keys, then the other figures.
 const kFirst = [
   kRateColumns[0], kLostPixels, ...kRateColumns.slice(1), 'bound.system', 'bound.core', 'area.slices',
-  'area.block_rams', 'area.multipliers', 'latency_ms.capture_to_host.p50'
+  'area.block_rams', 'area.multipliers', 'energy.memory_mj_per_frame', 'latency_ms.capture_to_host.p50'
 ];
 
 export class Points {

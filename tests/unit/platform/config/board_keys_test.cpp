@@ -283,8 +283,10 @@ TEST(BoardKeysTable, ListsEveryKeyOfTheCasesAndOfBanksFiltersAndCosts) {
                                     "ssram.banks.NAME.words",
                                     "ssram.banks.NAME.kind",
                                     "ssram.banks.NAME.turnaround_cycles"};
-  for (const char* const name : {"cas_latency", "row_words", "internal_banks", "activate_cycles",
-                                 "precharge_cycles", "refresh_interval_cycles", "refresh_cycles"}) {
+  for (const char* const name :
+       {"cas_latency", "row_words", "internal_banks", "activate_cycles", "precharge_cycles",
+        "refresh_interval_cycles", "refresh_cycles", "energy.standby_mw", "energy.access_pj", "energy.row_pj",
+        "energy.refresh_pj"}) {
     for (const std::string of : {"ssram.default.", "ssram.banks.NAME."}) expected.insert(of + name);
   }
   for (const KeyCase& key : key_cases()) expected.insert(key.path);

@@ -49,6 +49,10 @@ std::vector<BankConfig> any_banks() {
                 any_int(0, 63), any_int(600, 1000000), any_int(1, 255)};
       if (any_int(0, 2) == 0) timing.refresh_interval_cycles.reset();
     }
+    if (any_int(0, 3) == 0) bank.standby_mw = any_int(0, 10'000'000) / 1e3;
+    if (any_int(0, 3) == 0) bank.access_pj = any_int(0, 1'000'000);
+    if (bank.sdram && any_int(0, 1) == 0) bank.row_pj = any_int(0, 1'000'000);
+    if (bank.sdram && any_int(0, 1) == 0) bank.refresh_pj = any_int(0, 1'000'000);
     banks.push_back(bank);
   }
   return banks;

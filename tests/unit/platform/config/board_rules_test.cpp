@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
@@ -189,6 +190,33 @@ TEST(BoardBanks, RequireTheTimingOfSdramOnlyWhereTheKindIsSdram) {
        {banks_board("banks: {a: {cas_latency: 3}}"), ""}});
 }
 
+TEST(BoardBanks, TakeWhatTheyGiveElseTheDefaultElseWhatTheirKindTakes) {
+  const BoardConfig board = load_text(
+      banks_board("default: {" + kSdram + kRefresh +
+                  ", energy: {access_pj: 5, row_pj: 6}}, banks: {a: {}, b: {energy: "
+                  "{access_pj: 0, standby_mw: 0.125}}, c: {kind: qdr, energy: {access_pj: 1000000}}}"));
+  const std::vector<std::tuple<double, int, int, int>> expected = {
+      {181.5, 5, 6, 61215}, {0.125, 0, 6, 61215}, {360, 1000000, 0, 0}};
+  for (std::size_t bank = 0; bank < expected.size(); ++bank) {
+    const auto [standby_mw, access_pj, row_pj, refresh_pj] = energy_of(board.banks[bank]);
+    EXPECT_EQ(std::tuple(standby_mw, access_pj, row_pj, refresh_pj), expected[bank]);
+  }
+  EXPECT_EQ(load_text(to_yaml(board)), board);
+}
+
+TEST(BoardBanks, RefuseEnergiesBeyondTheirRulesAndOfAnotherKind) {
+  const auto refused = [](const std::string& energy, const std::string& message) -> Refusal {
+    return {banks_board("banks: {a: {kind: qdr, energy: " + energy + "}}"),
+            "board.yaml:2:" + message.substr(0, 2) + ": ssram.banks.a.energy" + message.substr(2)};
+  };
+  expect_refusals({refused("{access_pj: 1000001}", "52.access_pj = 1000001: 0..1000000"),
+                   refused("{standby_mw: 10000.001}", "53.standby_mw = 10000.001: 0..10000"),
+                   refused("{row_pj: 1}", "49.row_pj = 1: only where the kind is sdram, and it is qdr"),
+                   refused("{acess_pj: 1}",
+                           "41.acess_pj = 1: unknown key; nearest known key: "
+                           "ssram.banks.a.energy.access_pj")});
+}
+
 TEST(BoardBanks, OfSdramGrantAnAccessBetweenTwoRefreshes) {
   const auto text = [](int activate, int interval, int refresh) {
     return banks_board(
@@ -268,7 +296,7 @@ TEST(BoardBanks, HaveValidNamesAndKnownKeysOnce) {
                    {banks_board("banks: {a: {}, b}"),
                     "board.yaml:2:24: ssram.banks.b = (nothing): a map of words, kind, turnaround_cycles, "
                     "cas_latency, row_words, internal_banks, activate_cycles, precharge_cycles, "
-                    "refresh_interval_cycles, refresh_cycles"},
+                    "refresh_interval_cycles, refresh_cycles, energy"},
                    {banks_board("banks: {a: {wrods: 5}}"),
                     "board.yaml:2:21: ssram.banks.a.wrods = 5: unknown key; nearest known key: "
                     "ssram.banks.a.words"}});

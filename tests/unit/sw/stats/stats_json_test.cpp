@@ -21,7 +21,7 @@ constexpr const char* kAreaLine =
 TEST(StatsJson, LeavesOutFiguresThatDoNotExist) {
   platform::Statistics statistics;
   statistics.area = kArea;
-  const std::string end = "  \"blame\": [],\n" + std::string(kAreaLine);
+  const std::string end = "\n    \"buffers\": []\n  },\n" + std::string(kAreaLine);
   EXPECT_THAT(stats_json(statistics, std::nullopt), EndsWith(end + "\n}\n"));
   EXPECT_THAT(stats_json(statistics, Accuracy{4.25, 2, 81.5}),
               EndsWith(end + ",\n  \"accuracy\": {\"bad_1_percent\": 4.25, \"bad_2_percent\": 2, "
