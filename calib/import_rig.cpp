@@ -414,10 +414,10 @@ void check(const Rig& rig, const ImportOptions& options, const Reader& reader) {
   if (rig.left.is_fisheye != rig.right.is_fisheye)
     reader.refuse("one lens is a fisheye, the other is none: both must have the same model");
   if (!options.unit_mm && (t.norm() < kLeastMm || t.norm() > kMostMm)) {
-    reader.refuse(
-        fmt::format("the cameras are {:.2f} mm apart: must be {} to {} mm, or the unit of T must be "
-                    "given by --unit mm, cm or m",
-                    t.norm(), kLeastMm, kMostMm));
+    reader.refuse(fmt::format(
+        "the cameras are {:.2f} mm apart: must be {} to {} mm; --unit mm, cm or m says in which unit "
+        "T is; T in squares of the grid must be converted first",
+        t.norm(), kLeastMm, kMostMm));
   }
 }
 

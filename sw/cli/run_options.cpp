@@ -115,8 +115,9 @@ void check_offset(const platform::BoardConfig& board, std::optional<int> offset,
         "which moves the picture, such as the preset fpl2003",
         *offset));
   if (std::abs(*offset) >= board.image.width)
-    problems.add(fmt::format("--disparity-offset = {}: must be less than the columns of the images, {}",
-                             *offset, board.image.width));
+    problems.add(fmt::format(
+        "--disparity-offset = {1}: must be less than the columns of the images, {0}, and above -{0}",
+        board.image.width, *offset));
 }
 
 void open_traces(const RunOptions& options, runs::RunInput& input) {

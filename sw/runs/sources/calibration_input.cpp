@@ -41,8 +41,10 @@ std::string import_hint(const std::string& path) {
     const auto format = calibration_functions().foreign_format(
         {path, files::read_whole_file(path, calib::kMostCalibrationBytes)});
     if (format)
-      return fmt::format("; this file of {} becomes one by stereotlm calibrate --import '{}' --out rig.yaml",
-                         *format, path);
+      return fmt::format(
+          "; this file of {} becomes one by stereotlm calibrate --import '{}' --near-mm Z --far-mm Z --out "
+          "rig.yaml, with all files of the calibration",
+          *format, path);
   } catch (const std::runtime_error&) {
   }
   return "";

@@ -148,6 +148,9 @@ class ImportTest(ProgramTest):
             (["none", *DEPTHS], "--import 'none': no such file"),
         ), self.imported)
         self.refused(run("calibrate", "--unit", "m", "--out", "f.yaml"), "--unit: goes with --import")
+        for cameras in ("P2", "P2,", ",P3"):
+            one = run("calibrate", "--import", "calib.txt", "--cameras", cameras, "--out", "f.yaml")
+            self.refused(one, "must be two names with a comma")
 
 
 if __name__ == "__main__":

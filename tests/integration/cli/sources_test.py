@@ -292,7 +292,7 @@ class Offset(SourceTest):
         source = [*PRELOADED, *SMALL, *self.pair, "--disparity-offset"]
         none = run("run", "fpl2003-no-calibration", *source, 5)
         self.refused_in_one_line(none, "such as the preset fpl2003")
-        self.refused_in_one_line(run("run", "fpl2003", *source, -WIDTH), "must be less than the columns")
+        self.refused_in_one_line(run("run", "fpl2003", *source, -WIDTH), f", and above -{WIDTH}")
 
 
 class Truth(SourceTest):
