@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -76,7 +75,7 @@ std::optional<Misarrangement> find_misarrangement(const GridViews& views, const 
     if (!fit || !(fit->evidence.ratio() < least)) return;
     least = fit->evidence.ratio();
     best = Misarrangement{cause, cure, fit->evidence.rig_rms_px};
-    roll = kDegrees * std::abs(std::atan2(fit->rig.rotation(1, 0), fit->rig.rotation(0, 0)));
+    roll = fit->rig.roll_deg();
   };
   for (const Eigen::Matrix2d& turn :
        {Eigen::Matrix2d(quarter * quarter), quarter, Eigen::Matrix2d(quarter.transpose())})

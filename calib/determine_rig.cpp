@@ -91,13 +91,13 @@ DeterminedRig determine_rig(const GridViews& views) {
   }
   check_tilt(fit.evidence);
   if (fit.evidence.refutes()) refuse_misfit(views, fit);
+  if (const auto problem = problem_of(fit.rig)) refuse(*problem);
   if (!lenses_are_determined(fit.rig))
     refuse(
         "the lenses are not determined up to the corners of their pictures: the grid must be seen there too");
   result.covariance = covariance(fit, views.shape, views.pairs);
   result.certainty = certainty_of(fit, result.covariance);
   check_focal_length(fit.rig, result.certainty);
-  if (const auto problem = problem_of(fit.rig)) refuse(*problem);
   return result;
 }
 

@@ -24,6 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMostPixels = 2048;  // of a side of a picture with a table
+constexpr int kWidthStep = 4;      // of the width of a board's images, pixels
 
 // A value of a file: its numbers, row by row, or its text.
 struct Field {
@@ -407,13 +408,30 @@ void check(const Rig& rig, const ImportOptions& options, const Reader& reader) {
   constexpr double kLeastMm = 5;
   constexpr double kMostMm = 10'000;
   const double distance = rig.translation.norm();
+  // A size that the user gives may be wrong. A file may hold a part of a picture.
+  const double margin = options.size ? 0.3 : 0;
+  for (const CameraModel* camera : {&rig.left, &rig.right}) {
+    const Eigen::Vector2d centre = camera->matrix.block<2, 1>(0, 2);
+    const Eigen::Vector2d share = centre.cwiseQuotient(Eigen::Vector2d(rig.width, rig.height));
+    if (share.minCoeff() >= margin && share.maxCoeff() <= 1 - margin) continue;
+    reader.refuse(fmt::format(
+        "the centre of a camera is ({:.1f}, {:.1f}) in pictures of {}x{}: must be {}: is "
+        "their size right?",
+        centre.x(), centre.y(), rig.width, rig.height, options.size ? "near the middle" : "inside"));
+  }
+  if (rig.width % kWidthStep != 0) {
+    reader.refuse(
+        fmt::format("pictures of {}x{}: a board takes widths that are a multiple of {}: crop the "
+                    "pictures on the right, and change their size in the file",
+                    rig.width, rig.height, kWidthStep));
+  }
   if (rig.left.is_fisheye != rig.right.is_fisheye)
     reader.refuse("one lens is a fisheye, the other is none: both must have the same model");
   if (!options.unit_mm && (distance < kLeastMm || distance > kMostMm)) {
-    reader.refuse(
-        fmt::format("the cameras are {:.2f} mm apart: must be {} to {} mm, or the unit of T must be "
-                    "given by --unit mm, cm or m",
-                    distance, kLeastMm, kMostMm));
+    reader.refuse(fmt::format(
+        "the cameras are {:.2f} mm apart: must be {} to {} mm; --unit mm, cm or m says in which unit "
+        "T is; T in squares of the grid must be converted first",
+        distance, kLeastMm, kMostMm));
   }
   if (const auto problem = problem_of(rig)) reader.refuse(*problem);
 }

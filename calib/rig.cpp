@@ -117,10 +117,11 @@ Eigen::Vector2d CameraModel::direction(const Eigen::Vector2d& pixel) const {
                           "): must be seen by the lens: its distortion folds the picture over there");
 }
 
+double Rig::roll_deg() const { return kDegrees * std::abs(std::atan2(rotation(1, 0), rotation(0, 0))); }
+
 std::optional<std::string> problem_of(const Rig& rig) {
   constexpr double kLeastBaseline = 1;  // mm
   constexpr double kMostFactor = 1.5;   // of the focal lengths
-  constexpr double kMostRoll = 45;      // degrees
   const Eigen::Vector3d& t = rig.translation;
   if (t.norm() < kLeastBaseline) {
     return fmt::format(
@@ -132,7 +133,7 @@ std::optional<std::string> problem_of(const Rig& rig) {
     return fmt::format("the focal lengths are {:.0f} and {:.0f} px: two cameras of one kind are needed",
                        rig.left.matrix(0, 0), rig.right.matrix(0, 0));
   }
-  const double roll = kDegrees * std::abs(std::atan2(rig.rotation(1, 0), rig.rotation(0, 0)));
+  const double roll = rig.roll_deg();
   if (roll > kMostRoll) {
     return fmt::format(
         "one camera is turned by {:.0f} degrees about its axis against the other: both must be upright",

@@ -47,7 +47,12 @@ struct Rig {
   // Camera coordinates of a point: right = rotation * left + translation, mm.
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  // By how much one camera is turned about its axis against the other, 0..180 degrees.
+  double roll_deg() const;
 };
+
+inline constexpr double kMostRoll = 45;  // degrees of a rig for a board
 
 // Why the cameras cannot be those of a board, which stand side by side, upright, the left one first, and are
 // of one kind. Nullopt if they can.

@@ -127,24 +127,27 @@ double median(std::vector<double> values) {
 struct Places {
   std::vector<double> errors;     // [pair]: distance from the median of all pairs, mm
   std::vector<double> distances;  // [pair]: of the grid, mm
+  Eigen::Isometry3d nearest;      // from the left to the right camera, of the pair with the least error
 };
 
 Places places_of(const SingleFit& left, const SingleFit& right) {
   Places result;
-  std::vector<Eigen::Vector3d> places;
+  std::vector<Eigen::Isometry3d> places;
   for (std::size_t pair = 0; pair < left.rotations.size(); ++pair) {
     const Eigen::Isometry3d from_grid = to_pose(left.rotations[pair], left.translations[pair]);
-    places.push_back(
-        (to_pose(right.rotations[pair], right.translations[pair]) * from_grid.inverse()).translation());
+    places.push_back(to_pose(right.rotations[pair], right.translations[pair]) * from_grid.inverse());
     result.distances.push_back(from_grid.translation().norm());
   }
   Eigen::Vector3d middle;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> along;
-    for (const Eigen::Vector3d& place : places) along.push_back(place[axis]);
+    for (const Eigen::Isometry3d& place : places) along.push_back(place.translation()[axis]);
     middle[axis] = median(along);
   }
-  for (const Eigen::Vector3d& place : places) result.errors.push_back((place - middle).norm());
+  for (const Eigen::Isometry3d& place : places)
+    result.errors.push_back((place.translation() - middle).norm());
+  const auto least = std::min_element(result.errors.begin(), result.errors.end());
+  result.nearest = places[static_cast<std::size_t>(least - result.errors.begin())];
   return result;
 }
 
@@ -421,12 +424,16 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   const SingleFit right = fit_camera(all, all.right, size, lens);
   const Places places = places_of(left, right);
   if (const Used agree = pairs_that_agree(places, corners); !has_few_pairs(agree)) used = agree;
-  const Rig guess = guess_of(left, right, size);
-  if (!nearly_agree(places)) {
+  Rig guess = guess_of(left, right, size);
+  guess.rotation = places.nearest.linear();
+  guess.translation = places.nearest.translation();
+  const bool do_agree = nearly_agree(places);
+  // OpenCV finds no rig whose cameras are turned by half a turn.
+  if (!do_agree || guess.roll_deg() > kMostRoll) {
     RigFit fit;
     fit.rig = guess;
     fit.evidence = evidence_of({left, right});
-    fit.evidence.disagreement_mm = median(places.errors);
+    fit.evidence.disagreement_mm = do_agree ? 0 : median(places.errors);
     return fit;
   }
   RigFit fit = fit_once(shape, pairs, used, guess, lens);

@@ -72,9 +72,9 @@ inline constexpr std::size_t kFewestPairs = 3;
 // to the median pair. The fit is repeated until it uses the same corners again. Then each camera is fitted by
 // itself to these corners. The result has the lenses of these fits, if the rig fits 1.5 times worse than its
 // cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma. If the pairs do
-// not nearly agree where the cameras stand, only the lenses of single fits are the result. The caller looks
-// at RigFit::evidence. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error
-// if OpenCV finds no rig.
+// not nearly agree where the cameras stand, or if one is turned by more than kMostRoll, no corner is fitted
+// and only the lenses of single fits are the result. The caller looks at RigFit::evidence. Throws
+// std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 

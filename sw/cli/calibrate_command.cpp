@@ -265,8 +265,9 @@ struct CalibrateOptions : Options {
       "The grid: columns x rows of inner corners, where four squares meet (a board of 10x7 squares has 9x6), "
       "or of circles",
       {is_grid()});
-  Option pattern = Option(this, "--pattern", "chessboard|circles|asymmetric_circles",
-                          "What the grid shows (default chessboard); circles are dark on a bright ground",
+  Option pattern = Option(this, "--pattern", "PATTERN",
+                          "What the grid shows: chessboard (the default), circles or asymmetric_circles; "
+                          "circles are dark on a bright ground",
                           {one_of({calib::kPatternNames.begin(), calib::kPatternNames.end()})});
   Option square =
       Option(this, "--square-mm", "S", "A side of its squares, in millimetres; of circles: from row to row",
@@ -302,7 +303,7 @@ struct CalibrateOptions : Options {
       Option(this, "--cameras", "LEFT,RIGHT", "With --import of KITTI: the two projections, such as P2,P3",
              {valid("two names with a comma, such as P2,P3", [](const std::string& text) {
                const std::size_t comma = text.find(',');
-               return comma > 0 && comma + 1 < text.size();
+               return comma > 0 && comma < text.size() - 1;
              })});
   Option near = Option(this, "--near-mm", "Z", "With --import: the nearest depth to see, in mm",
                        {number<double>("a number above 0", [](double depth) { return depth > 0; })});
@@ -425,7 +426,8 @@ class Calibrator {
       result_ = functions.calibrate(request_);
       drawings_ = functions.drawings(request_, result_);
     });
-    runs::ProgressLine progress(fmt::format("{} pairs of pictures are compared", request_.pictures.size()));
+    runs::ProgressLine progress(
+        fmt::format("calibration from {} pairs of pictures", request_.pictures.size()));
     const auto show = [&] {
       const std::lock_guard lock(mutex);
       if (searched == pictures) return progress.show_time();

@@ -57,7 +57,7 @@ std::vector<files::NamedFile> inputs_of(const Import& import) {
 int export_rig(const Import& import, const calib::Calibration& made) {
   const auto written = runs::calibration_functions().export_rig(made.rig, made.rectification, import.format);
   const fs::path out = import.out;
-  const files::FileKind kind = {"exported calibration", [](const fs::path& earlier) {
+  const files::FileKind kind = {"file of --export", [](const fs::path& earlier) {
                                   return files::read_whole_file(earlier).find(calib::kExportMark) < 20;
                                 }};
   std::string names;

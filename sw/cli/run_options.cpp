@@ -115,8 +115,9 @@ void check_offset(const platform::BoardConfig& board, std::optional<int> offset,
         "which moves the picture, such as the preset fpl2003",
         *offset));
   if (std::abs(*offset) >= board.image.width)
-    problems.add(fmt::format("--disparity-offset = {}: must be less than the columns of the images, {}",
-                             *offset, board.image.width));
+    problems.add(fmt::format(
+        "--disparity-offset = {1}: must be less than the columns of the images, {0}, and above -{0}",
+        board.image.width, *offset));
 }
 
 void open_traces(const RunOptions& options, runs::RunInput& input) {
@@ -415,7 +416,7 @@ runs::RunInput RunOptions::load() const {
   problems.check();
   for (const std::string& note : opened.notes) process::say("note", note);
   if (input.calibration) say_what_is_not_seen(input);
-  if (input.calibration && !input.timing_only)
+  if (!input.timing_only)
     process::attempt_or_refuse("", [&] { runs::say_how_rows_agree(input, opened.pairs->pair(0)); });
   input.pairs = input.timing_only ? runs::blank_pairs(input.board) : std::move(opened.pairs);
   return input;

@@ -294,8 +294,12 @@ Picture decode_pnm(std::string_view bytes) {
       sample = static_cast<std::uint8_t>(level);
     }
   } else {
-    if (words.rest().size() < picture.samples.size()) refuse_damaged();
-    std::copy_n(words.rest().begin(), picture.samples.size(), picture.samples.begin());
+    std::string_view rest = words.rest();
+    // One byte of white space ends the header, or the two of a line's end in Windows.
+    const char last = rest.data()[-1];
+    if (last == '\r' && rest.size() == picture.samples.size() + 1 && rest[0] == '\n') rest.remove_prefix(1);
+    if (rest.size() < picture.samples.size()) refuse_damaged();
+    std::copy_n(rest.begin(), picture.samples.size(), picture.samples.begin());
   }
   if (picture.channels % 2 == 0) drop_alpha(picture);
   // The file has red first.

@@ -96,10 +96,14 @@ std::string checked_tiff(std::string_view bytes) {
   std::string tiff(bytes);
   if (bytes.substr(0, 2) != "II" && bytes.substr(0, 2) != "MM") return tiff;
   constexpr unsigned kBits = 258;
+  constexpr unsigned kSamples = 277;
   constexpr unsigned kPhotometric = 262;
   constexpr unsigned kInks = 5;
   constexpr unsigned kOrientation = 274;
-  if (tiff_field(bytes, kBits) == 1U) refuse_picture("1-bit grey", kPixelRule);
+  // Without the field, a sample has one bit. A colour picture has a list of three.
+  const unsigned bits =
+      tiff_field(bytes, kBits).value_or(tiff_field(bytes, kSamples).value_or(1) == 1 ? 1 : 8);
+  if (bits == 1) refuse_picture("1-bit grey", kPixelRule);
   if (tiff_field(bytes, kPhotometric) == kInks) refuse_picture("CMYK", kPixelRule);
   std::size_t place = 0;
   if (tiff_field(bytes, kOrientation, &place)) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sw/process/streams.h"
 #include "sw/runs/sources/calibration_library.h"
@@ -41,6 +43,14 @@ std::optional<std::string> exchange_text(const RunInput& input, const host::Ster
 }  // namespace
 
 void say_how_rows_agree(const RunInput& input, const host::StereoPair& pair) {
+  const std::vector<std::uint8_t>& pixels = pair.left.pixels;
+  const bool is_uniform =
+      std::all_of(pixels.begin(), pixels.end(), [&](auto each) { return each == pixels[0]; });
+  if (!is_uniform && pixels == pair.right.pixels) {
+    return process::say("warning",
+                        "the left and the right picture are the same: a pair has one of each camera");
+  }
+  if (!input.calibration) return;
   constexpr double kDoubtful = 1.5;  // pixels
   constexpr std::size_t kFew = 10;
   constexpr std::size_t kMany = 50;

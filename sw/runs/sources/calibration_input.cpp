@@ -38,11 +38,14 @@ kernels::RectificationTable load_table(const fs::path& path, const std::string& 
 // The command that takes the file, if it is a calibration of another kind.
 std::string import_hint(const std::string& path) {
   try {
-    const auto format = calibration_functions().foreign_format(
-        {path, files::read_whole_file(path, calib::kMostCalibrationBytes)});
-    if (format)
-      return fmt::format("; this file of {} becomes one by stereotlm calibrate --import '{}' --out rig.yaml",
-                         *format, path);
+    const std::string text = files::read_whole_file(path, calib::kMostCalibrationBytes);
+    const bool is_own = text.find("left_lut_sha256:") != std::string::npos;
+    const auto format = calibration_functions().foreign_format({path, text});
+    if (format && !is_own)
+      return fmt::format(
+          "; this file of {} becomes one by stereotlm calibrate --import '{}' --near-mm Z --far-mm Z --out "
+          "rig.yaml, with all files of the calibration",
+          *format, path);
   } catch (const std::runtime_error&) {
   }
   return "";

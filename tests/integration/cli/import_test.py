@@ -89,7 +89,7 @@ class ImportTest(ProgramTest):
         truth[:, :30] = numpy.inf
         size = f"width={width}\nheight={height}\n"
         middlebury = MIDDLEBURY.replace("width=64\nheight=32\n", size)
-        kitti = "P0: 64 0 31 0 0 64 15 0 0 0 1 0\nP1: 64 0 31 -6.4 0 64 15 0 0 0 1 0\n"  # 0.1 m
+        kitti = "P0: 64 0 80 0 0 64 24 0 0 0 1 0\nP1: 64 0 80 -6.4 0 64 24 0 0 0 1 0\n"  # 0.1 m
         levels = numpy.where(numpy.isfinite(truth), truth * 256, 0).astype(">u2")
         for calib, words, of_run, doffs in (
             (middlebury, [], ["--truth", self.file("t.pfm", pfm(truth))], 3),
@@ -148,6 +148,9 @@ class ImportTest(ProgramTest):
             (["none", *DEPTHS], "--import 'none': no such file"),
         ), self.imported)
         self.refused(run("calibrate", "--unit", "m", "--out", "f.yaml"), "--unit: goes with --import")
+        for cameras in ("P2", "P2,", ",P3"):
+            one = run("calibrate", "--import", "calib.txt", "--cameras", cameras, "--out", "f.yaml")
+            self.refused(one, "must be two names with a comma")
 
 
 if __name__ == "__main__":

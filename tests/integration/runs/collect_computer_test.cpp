@@ -117,7 +117,8 @@ TEST_F(CollectComputer, FindsASteadyRateAboveItsBoundByMoreThanItsUncertainty) {
                                                     *found.bound.system * (1 + 1e-9))));
 }
 
-// Each identity is broken by one counter of a valid run. Words that reach a bank break that of its energy, too.
+// Each identity is broken by one counter of a valid run. Words that reach a bank break that of its energy,
+// too.
 TEST_F(CollectComputer, FindsEachIdentityThatDoesNotHold) {
   const ComputerCounters valid = counters;
   const auto expect_failed = [&](const std::string& left, std::uint64_t is, const std::string& right,

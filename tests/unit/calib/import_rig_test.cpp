@@ -121,7 +121,7 @@ TEST(ImportRig, TakesTheUsualNamesAndAUnit) {
       [] {
         import_rig({{"rig.json", kNamed}}, {});
       },
-      ThrowsMessage<std::runtime_error>(HasSubstr("by --unit mm, cm or m")));
+      ThrowsMessage<std::runtime_error>(HasSubstr("--unit mm, cm or m says")));
 }
 
 const std::string kKitti =
@@ -164,6 +164,9 @@ TEST(ImportRig, RefusesWhatIsNoRig) {
   EXPECT_THAT(refused(kNamed, "[-0.12, 0, 0]", "[120, 0, 0]"), HasSubstr("the cameras are swapped"));
   EXPECT_THAT(refused(kNamed, "[-0.12, 0, 0]", "[0, -120, 0]"), HasSubstr("120.0 mm below the left one"));
   EXPECT_THAT(refused(kNamed, "\"T\"", "\"X\""), HasSubstr("R and T, or R1, R2 and P2: missing"));
+  EXPECT_THAT(refused(kNamed, "640", "642"),
+              HasSubstr("642x480: a board takes widths that are a multiple of 4"));
+  EXPECT_THAT(refused(kNamed, "640", "300"), HasSubstr("in pictures of 300x480: must be inside"));
   EXPECT_THAT(refused(kNamed, "dist_left", "other"), HasSubstr("D1 or distCoeffs1: missing"));
   EXPECT_THAT(refused(kNamed, "[-0.1, 0, 0, 0]", "[-0.1, 0, 0]"), HasSubstr("must be 4, 5, 8 or 12"));
   EXPECT_THAT(refused(kNamed, "[640, 480]", "[0, 480]"), HasSubstr("0x480 pixels: must be 1..2048 each"));

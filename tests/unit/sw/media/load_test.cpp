@@ -182,6 +182,7 @@ TEST_F(LoadTest, RefusesPixelsThatAreNotEightBitGreyOrColour) {
       {std::string(5000, 't'), "not a picture in a format that is read: a picture must be PNG, "}};
   for (const auto& [bytes, message] : refused) EXPECT_THAT(refusal_of_bytes(bytes), HasSubstr(message));
   EXPECT_EQ(load_gray(file("P5\n# 100\n2 1\n255\nab")).image.pixels, (std::vector<std::uint8_t>{'a', 'b'}));
+  EXPECT_EQ(load_gray(file("P5\r\n2 1\r\n255\r\nab")).image.pixels, (std::vector<std::uint8_t>{'a', 'b'}));
   EXPECT_EQ(load_gray(file("P2\n2 1\n255\n0 50\n")).image.pixels, (std::vector<std::uint8_t>{0, 50}));
   EXPECT_TRUE(load_gray(file(encoded(".ras", noise(CV_8UC3)))).converted_from_colour);
 }
