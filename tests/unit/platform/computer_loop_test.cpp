@@ -67,7 +67,7 @@ class LoopProcessor : public pci::PciMasterIf {
   }
   // To be called while the core runs no frame.
   ComputerCounters computer_counters() {
-    return loop().controls().counters(loop().board().counters(), loop().now_ps());
+    return loop().controls().counters(loop().board().counters(loop().now_ps()), loop().now_ps());
   }
 
   pci::PciBurst begin_burst(std::uint64_t address_clock_ps) override {
