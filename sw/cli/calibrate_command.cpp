@@ -27,6 +27,7 @@
 #include "sw/cli/calibrate_import.h"
 #include "sw/cli/calibration_text.h"
 #include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
 #include "sw/files/output_file.h"
 #include "sw/files/output_folder.h"
 #include "sw/files/text_forms.h"
@@ -151,7 +152,8 @@ struct CalibrateOptions : Options {
     }
     if (!square.is_given()) problems.add("--square-mm: missing: a side of the grid's squares in millimetres");
     if (print_grid.is_given()) {
-      for (const Option* option : {&grid, &left, &right, &side_by_side, &synthetic, &disparities, &offset}) {
+      for (const Option* option :
+           {&grid, &left, &right, &side_by_side, &video, &video_layout, &synthetic, &disparities, &offset}) {
         if (option->is_given())
           problems.add(fmt::format("{}: does not go with --print-grid", option->name()));
       }
@@ -161,13 +163,17 @@ struct CalibrateOptions : Options {
     } else {
       if (!grid.is_given()) problems.add(fmt::format("--grid: missing: {}", kGridRule));
       const bool has_sides = left.is_given() || right.is_given();
+      const bool has_video = video.is_given();
+      check_video(video, video_layout, problems);
+      if (has_video && (has_sides || side_by_side.is_given() || synthetic.is_given()))
+        problems.add("--video: has all pictures: goes with no other pictures");
       if (synthetic.is_given() && (has_sides || side_by_side.is_given()))
         problems.add(
             "--synthetic: makes its own pictures: does not go with --left, --right and --side-by-side");
       if (side_by_side.is_given() && has_sides)
         problems.add("--side-by-side: has both pictures of a pair: does not go with --left and --right");
       for (const auto& [side, option] : {std::pair("left", &left), std::pair("right", &right)}) {
-        if (!synthetic.is_given() && !side_by_side.is_given() && !option->is_given())
+        if (!synthetic.is_given() && !has_video && !side_by_side.is_given() && !option->is_given())
           problems.add(fmt::format("--{0}: missing: the {0} camera's pictures (or --synthetic SEED)", side));
       }
       ends_in(".yaml")(out, problems);
@@ -184,16 +190,17 @@ struct CalibrateOptions : Options {
   // With --check, which goes with no other option.
   void check_alone(process::Problems& problems) {
     for (const Option* option :
-         {&grid, &pattern, &square, &left, &right, &side_by_side, &synthetic, &print_grid, &disparities,
-          &offset, &import, &size, &unit, &lens, &cameras, &near, &far, &exported, &out}) {
+         {&grid,         &pattern,   &square,     &left,        &right,  &side_by_side, &video,
+          &video_layout, &synthetic, &print_grid, &disparities, &offset, &import,       &size,
+          &unit,         &lens,      &cameras,    &near,        &far,    &exported,     &out}) {
       if (option->is_given()) problems.add(fmt::format("{}: does not go with --check", option->name()));
     }
   }
 
   // With --import, in place of the others.
   void check_import(process::Problems& problems) {
-    for (const Option* option :
-         {&grid, &pattern, &square, &left, &right, &side_by_side, &synthetic, &print_grid}) {
+    for (const Option* option : {&grid, &pattern, &square, &left, &right, &side_by_side, &video,
+                                 &video_layout, &synthetic, &print_grid}) {
       if (option->is_given()) problems.add(fmt::format("{}: does not go with --import", option->name()));
     }
     ends_in(".yaml")(out, problems);
@@ -255,6 +262,14 @@ struct CalibrateOptions : Options {
                                "Instead of --left and --right: pictures that hold the left and the right "
                                "picture of a pair side by side",
                                {}, Takes::kList);
+  Option video = Option(this, "--video", "F [F2]",
+                        "Instead of pictures: up to 40 pairs of a video of the grid, or of two, the left one "
+                        "first",
+                        {}, Takes::kList);
+  Option video_layout = Option(this, "--video-layout", "LAYOUT",
+                               "Where --video has the pictures of a pair: two (files), side_by_side or "
+                               "top_bottom (in one file)",
+                               {goes_with(video, "F [F2]"), one_of(runs::kVideoLayoutNames)});
   Option synthetic =
       Option(this, "--synthetic", "SEED",
              "Instead of pictures: a synthetic rig with known parameters, another one for each "
@@ -373,6 +388,11 @@ class Calibrator {
 
  private:
   void load_pictures(process::Problems& problems) {
+    if (options_.video.is_given()) {
+      request_.pictures =
+          runs::load_grid_video(options_.video.texts(), options_.video_layout.text(), problems);
+      return;
+    }
     if (!options_.synthetic.is_given()) {
       request_.pictures = runs::load_grid_pictures(options_.left.texts(), options_.right.texts(),
                                                    options_.side_by_side.texts(), problems);
@@ -391,7 +411,8 @@ class Calibrator {
 
   void open_output() {
     std::vector<files::NamedFile> inputs;
-    if (!rig_) {  // the pictures of a synthetic rig are outputs
+    for (const std::string& file : options_.video.texts()) inputs.push_back({"--video", file});
+    if (!rig_ && inputs.empty()) {  // the pictures of a synthetic rig are outputs
       for (const calib::PicturePair& pair : request_.pictures) {
         const bool is_split = options_.side_by_side.is_given();
         inputs.push_back({is_split ? "--side-by-side" : "--left", pair.left_name});

@@ -302,15 +302,19 @@ bool PictureOptions::check_together(process::Problems& problems, bool may_be_mis
   if (given.size() > 1)
     problems.add(
         fmt::format("{}: a run has one source of pictures: {}", fmt::join(given, ", "), kPictureOptions));
-  if (video.is_given() && !video_layout.is_given())
+  check_video(video, video_layout, problems);
+  return !is_missing;
+}
+
+void check_video(const Option& video, const Option& layout, process::Problems& problems) {
+  if (video.is_given() && !layout.is_given())
     problems.add(fmt::format("--video-layout: missing: goes with --video, one of {}",
                              platform::listed(runs::kVideoLayoutNames)));
-  const std::size_t needed = runs::video_files(video_layout.text());
+  const std::size_t needed = runs::video_files(layout.text());
   if (video.is_given() && needed > 0 && video.texts().size() != needed)
     problems.add(fmt::format("--video '{}': must name {} with --video-layout {}",
                              fmt::join(video.texts(), "' '"), needed == 1 ? "one file" : "two files",
-                             video_layout.text()));
-  return !is_missing;
+                             layout.text()));
 }
 
 std::vector<std::string> PictureOptions::sources_given() const {

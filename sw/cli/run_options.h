@@ -115,6 +115,9 @@ struct TruthOptions {
        goes_with(file, "F")});
 };
 
+// Reports a video without layout, and a layout of another number of files.
+void check_video(const Option& video, const Option& layout, process::Problems& problems);
+
 // The options that select the pictures of a run.
 struct PictureOptions {
   bool is_given() const { return !sources_given().empty() || video_layout.is_given(); }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "sw/files/text_forms.h"
 #include "sw/media/load.h"
 #include "sw/process/streams.h"
+#include "sw/runs/sources/open_source.h"
 #include "sw/runs/sources/pair_files.h"
 
 namespace stereotlm::runs {
@@ -23,6 +26,14 @@ kernels::GrayImage half_of(const kernels::GrayImage& image, int first_column) {
       half.at(column, row) = image.at(first_column + column, row);
   }
   return half;
+}
+
+void check_size(const std::string& name, int width, int height, process::Problems& problems) {
+  const kernels::IntegerRule& widths = fpga::kWidthWithTableRule;
+  const kernels::IntegerRule& heights = fpga::kHeightWithTableRule;
+  if (widths.allows(width) && heights.allows(height)) return;
+  problems.add(fmt::format("{}: {}x{} pixels: a board's images with a look-up table are {} wide and {} high",
+                           name, width, height, widths.text(), heights.text()));
 }
 
 }  // namespace
@@ -62,13 +73,7 @@ std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string
     if (!is_new)
       problems.add(fmt::format("{}: the same picture as {}: must be another one", name, known->second));
     std::vector<std::string>& of_size = names_of_size[{image.width, image.height}];
-    const kernels::IntegerRule& widths = fpga::kWidthWithTableRule;
-    const kernels::IntegerRule& heights = fpga::kHeightWithTableRule;
-    if (of_size.empty() && !(widths.allows(image.width) && heights.allows(image.height))) {
-      problems.add(
-          fmt::format("{}: {}x{} pixels: a board's images with a look-up table are {} wide and {} high", name,
-                      image.width, image.height, widths.text(), heights.text()));
-    }
+    if (of_size.empty()) check_size(name, image.width, image.height, problems);
     of_size.push_back(name);
   };
   std::vector<calib::PicturePair> pairs;
@@ -96,6 +101,31 @@ std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string
     process::say("note",
                  fmt::format("{} of {} pictures: colour, converted to grey", converted, loaded_files));
   for (const std::string& note : files.notes) process::say("note", note);
+  return pairs;
+}
+
+std::vector<calib::PicturePair> load_grid_video(const std::vector<std::string>& files,
+                                                const std::string& layout, process::Problems& problems) {
+  constexpr std::uint64_t kMost = 40;
+  InputPictures pictures;
+  for (const std::string& file : files) pictures.video.push_back({file, ""});
+  pictures.video_layout = layout;
+  const OpenedSource opened = open_source(pictures, nullptr, problems);
+  for (const std::string& note : opened.notes) process::say("note", note);
+  std::vector<calib::PicturePair> pairs;
+  if (opened.pairs == nullptr) return pairs;
+  const std::string& last = files.back();
+  check_size(fmt::format("--video '{}'", files.front()), opened.sizes.front().width,
+             opened.sizes.front().height, problems);
+  const std::uint64_t count = std::min(kMost, opened.pairs->length());
+  for (std::uint64_t i = 0; i < count && !process::interrupted(); ++i) {
+    const std::uint64_t frame = i * opened.pairs->length() / count;
+    problems.attempt("--video ", [&] {
+      const host::StereoPair& pair = opened.pairs->pair(frame);
+      pairs.push_back({fmt::format("{} frame {} left", files.front(), frame),
+                       fmt::format("{} frame {} right", last, frame), pair.left, pair.right});
+    });
+  }
   return pairs;
 }
 

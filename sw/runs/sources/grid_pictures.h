@@ -17,4 +17,9 @@ std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string
                                                    const std::vector<std::string>& side_by_side,
                                                    process::Problems& problems);
 
+// Loads up to 40 pairs of a video, evenly spread over its frames. `files` and `layout`: as of InputPictures.
+// Reports problems as the function above.
+std::vector<calib::PicturePair> load_grid_video(const std::vector<std::string>& files,
+                                                const std::string& layout, process::Problems& problems);
+
 }  // namespace stereotlm::runs

@@ -9,7 +9,7 @@ import struct
 import time
 
 import program
-from pictures import noise, pgm, read_pfm, read_png, read_png_16
+from pictures import avi, noise, pgm, read_pfm, read_png, read_png_16
 from program import PRELOADED, RESULT_FILES, ProgramTest, Terminal, made_rig, run, sets, wait_until
 
 GRID = ["--grid", "7x5", "--square-mm", "30"]
@@ -75,12 +75,14 @@ class Made(CalibrateTest):
 
     def test_takes_pairs_side_by_side(self):
         (self.folder / "both").mkdir()
+        frames = []
         for number in range(4):
             left, right = (read_png(self.pictures / f"{side}_0{number}.png")[3] for side in SIDES)
             if number == 3:
                 right = [bytes(640)] * 480
             rows = b"".join(bytes(a) + bytes(b) for a, b in zip(left, right))
             self.file(f"both/{number}.pgm", pgm(1280, 480, rows))
+            frames.append(rows)
         out = ["--disparities", 120, "--out", self.folder / "both.yaml"]
         beside = ["calibrate", *GRID, *out, "--side-by-side"]
         process = run(*beside, self.folder / "both" / "*.pgm")
@@ -90,6 +92,15 @@ class Made(CalibrateTest):
         for side in SIDES:
             table = (self.folder / f"new_{side}.lut").read_bytes()
             self.assertEqual((self.folder / f"both_{side}.lut").read_bytes(), table)
+        video = ["--video", self.file("both.avi", avi(1280, 480, frames)), "--video-layout", "side_by_side"]
+        of_video = ["calibrate", *GRID, "--disparities", 120, "--out", self.folder / "video.yaml", *video]
+        process = run(*of_video)
+        self.succeeds(process)
+        self.assertIn("both.avi frame 3 right': no grid of 7x5", process.stderr)
+        for side in SIDES:
+            table = (self.folder / f"video_{side}.lut").read_bytes()
+            self.assertEqual((self.folder / f"both_{side}.lut").read_bytes(), table)
+        self.refused(run(*of_video, "--left", self.left), "--video: has all pictures")
         odd = self.file("odd.pgm", pgm(1281, 2, bytes(1281 * 2)))
         self.refused(run(*beside, odd), f"--side-by-side '{odd}': 1281 pixels wide: must be even")
         same = self.file("same.pgm", pgm(8, 2, bytes(16)))
