@@ -68,7 +68,7 @@ double depth_of(const Rig& rig, const Eigen::Matrix3d& r1, const SeenPoint& seen
 
 // Gauss-Newton's normal equations of all parameters, from which the poses of the grids are eliminated.
 RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::vector<GridPair>& pairs) {
-  constexpr double kOtherK3 = 0.02;  // one sigma of what a k3 may add at the corner of the picture
+  constexpr double kOtherK3 = 0.05;  // one sigma of what a k3 may add at the corner of the picture
   const std::vector<Eigen::Vector3d> points = corner_points(shape);
   RigCovariance normal = RigCovariance::Zero();
   double squares = 0;

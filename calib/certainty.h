@@ -30,7 +30,7 @@ struct Certainty {
 
 // The covariance of fx, fy, cx, cy, k1, k2, p1, p2, k3 of the left and the right camera, of the rotation
 // vector (rad) and of the translation (mm). A k3 that is taken as 0 counts as one that moves
-// the corner of the picture by 0 +- 2 % of its distance from the centre. Throws as CameraModel::direction().
+// the corner of the picture by 0 +- 5 % of its distance from the centre. Throws as CameraModel::direction().
 constexpr int kRigParameters = 24;
 using RigCovariance = Eigen::Matrix<double, kRigParameters, kRigParameters>;
 RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::vector<GridPair>& pairs);
