@@ -421,7 +421,7 @@ runs::RunInput RunOptions::load() const {
   for (const std::string& note : opened.notes) process::say("note", note);
   if (input.calibration) say_what_is_not_seen(input);
   if (!input.timing_only)
-    process::attempt_or_refuse("", [&] { runs::say_how_rows_agree(input, opened.pairs->pair(0)); });
+    process::attempt_or_refuse("", [&] { runs::check_pair(input, opened.pairs->pair(0)); });
   input.pairs = input.timing_only ? runs::blank_pairs(input.board) : std::move(opened.pairs);
   return input;
 }
