@@ -204,6 +204,25 @@ const std::string* sent_content(const process::FileContents& sent, const std::st
   return nullptr;
 }
 
+std::optional<runs::CalibrationInput> calibration_of(explore::Plan& plan, const Option& option,
+                                                     const process::FileContents& sent) {
+  const std::string path = option.is_given() ? option.text() : plan.calibration();
+  if (path.empty()) return std::nullopt;
+  const std::string named = option.is_given()
+                                ? option.name()
+                                : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
+  process::Problems problems;
+  auto calibration = runs::load_calibration(path, nullptr, problems, named, sent);
+  if (calibration) {
+    const calib::Rig& rig = calibration->calibration->rig;
+    const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height,
+                                              platform::joint_tables_problem(calibration->tables));
+    if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
+  }
+  problems.check();
+  return calibration;
+}
+
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
   problems.attempt("", [&] {
