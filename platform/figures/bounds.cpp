@@ -412,7 +412,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   const auto folds = static_cast<std::uint64_t>(geometry.folds);
   const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
   const std::uint64_t after_last_slot =
-      geometry.drain_cycles * folds + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
+      geometry.drain_cycles * folds +
+      static_cast<std::uint64_t>(geometry.result_delay_cycles + geometry.last_rows) + pipeline;
 
   struct BankDemand {
     std::uint64_t reads = 0;
