@@ -39,6 +39,7 @@ std::map<std::string, KeyEffects> table() {
       {"fpga.lane_fifo_slots", kCoreOfArea},
       {"fpga.result_fifo_words", kCoreOfArea},
       {"fpga.pipeline_latency_cycles", kCoreOfArea},
+      {"fpga.result_delay_cycles", kCoreOfArea},
       {"fpga.tables", kPlace},
       {"fpga.pixel_cache", kCoreOfArea},
       {"fpga.lanes", kCoreOfArea},
@@ -56,6 +57,7 @@ std::map<std::string, KeyEffects> table() {
     if (begins_with("cameras.") || begins_with("capture.") || begins_with("pci.") || begins_with("bridge."))
       effects.emplace(key.path, kComputer);
     if (begins_with("allocation.")) effects.emplace(key.path, kPlace);
+    if (begins_with("matcher.filter.") || begins_with("matcher.cost.")) effects.emplace(key.path, kAll);
     if (!begins_with("ssram.")) continue;
     const bool is_energy = key.path.find(".energy.") != std::string::npos;
     const bool is_words = key.path.size() > 6 && key.path.rfind(".words") == key.path.size() - 6;

@@ -338,7 +338,7 @@ TEST(PlanRefusals, NameThePlaceTheValueAndTheRule) {
   const std::string points = ": the plan would have 2 points";
   EXPECT_THAT(refusal("bord: fpl2003\n"),
               ElementsAre(":1:1: bord = fpl2003: unknown key; nearest: board; keys: board, run, set, vary, "
-                          "zip, where or sample",
+                          "zip, where, sample, placements, maximise, minimise or require",
                           ":1:1: board: missing: a preset, or the path of a board file"));
   EXPECT_THAT(refusal(std::string(kBoard) + "vary: {matcher.window: [3, 4]}\n"),
               ElementsAre(":2:28: matcher.window = 4: 3..31, odd", points));

@@ -1,0 +1,65 @@
+#include "sw/explore/optimise/key_effects.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "platform/assembly/preloaded_system.h"
+#include "platform/config/board_area.h"
+#include "platform/config/board_keys.h"
+#include "platform/config/board_yaml.h"
+#include "sw/explore/plan/knobs.h"
+
+namespace stereotlm::explore {
+namespace {
+
+using platform::BoardConfig;
+
+TEST(KeyEffects, CoverEveryKey) {
+  for (const platform::Key& key : platform::board_keys())
+    EXPECT_NO_THROW(effects_of_key(key.path)) << key.path;
+}
+
+std::vector<std::uint64_t> cycles_of(const BoardConfig& board) {
+  return platform::run_core(board, platform::identity_tables(board), 2).frame_cycles;
+}
+
+// Of each change of one key of some boards: what the key does not change stays.
+TEST(KeyEffects, WhatAKeyDoesNotChangeStays) {
+  std::set<std::string> changed;
+  for (const char* const preset :
+       {"fpl2003", "fpl2003-syncburst", "sdram", "four-rows", "eight-banks-four-lanes"}) {
+    const BoardConfig board = platform::load_board(preset, {"image={width: 32, height: 24}"});
+    for (const KnobStep& step : knob_steps(board, true, std::nullopt).possible) {
+      const platform::Key* const key = platform::find_key(platform::schema_path(step.knob));
+      if (key == nullptr || !platform::has_value(*key)) continue;
+      SCOPED_TRACE(std::string(preset) + ": " + step.knob + " -> " + step.to);
+      const KeyEffects& effects = effects_of_key(key->path);
+      // The step to the line buffer sets the rows too, and a kind of bank its timing.
+      if (step.sets.size() > 1) continue;
+      changed.insert(key->path);
+      if (!effects.core_cycles) {
+        EXPECT_EQ(cycles_of(step.board), cycles_of(board));
+        EXPECT_EQ(core_cycles_key(step.board), core_cycles_key(board));
+      }
+      if (!effects.area) {
+        EXPECT_EQ(platform::area_of(step.board).slices, platform::area_of(board).slices);
+      }
+      if (!effects.pins) {
+        EXPECT_EQ(platform::pins_of(step.board), platform::pins_of(board));
+      }
+      if (!effects.disparities) {
+        EXPECT_FALSE(step.changes_disparities);
+      }
+      // Boards with the same key of their cycles take the same cycles.
+      if (core_cycles_key(step.board) == core_cycles_key(board)) {
+        EXPECT_EQ(cycles_of(step.board), cycles_of(board));
+      }
+    }
+  }
+  EXPECT_GT(changed.size(), 20U);
+}
+
+}  // namespace
+}  // namespace stereotlm::explore
