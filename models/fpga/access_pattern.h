@@ -47,6 +47,8 @@ class AccessPattern {
     return shift == 0 ? words[0] : words[0] >> shift | words[1] << (64 - shift);
   }
 
+  // The number of pixels that the slots of a row access, in any strip.
+  std::uint64_t pixel_accesses_of_slots(int row) const { return counts_[static_cast<std::size_t>(row)]; }
   // Numbers of slots of a frame that lie inside the image, and that access their pixel: in a lane, and in
   // all.
   std::uint64_t table_accesses(int lane) const { return table_accesses_[static_cast<std::size_t>(lane)]; }

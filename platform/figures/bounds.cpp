@@ -16,6 +16,7 @@
 #include "models/kernels/rectification_table.h"
 #include "models/kernels/words.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/figures/search_bounds.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -212,31 +213,55 @@ BankAccesses all_accesses(const BoardConfig& board, const FrameAccesses& accesse
   return all;
 }
 
-// With two buffers on a side, the picture of frame k+1 is captured between the end of frame k-1, which used
-// its buffer, and the beginning of frame k+1. With two buffers for results, that of frame k-1 is read in the
-// same time. Frame k runs in that time. If frame k uses the bank of these words, it takes a cycle for each of
-// its accesses and for each word, except for words that are moved in the gap before it or behind it. In a gap
-// the host moves at most one word a cycle. So frames and gaps together take at least that many cycles.
-double contended_rate(const BoardConfig& board, const FrameAccesses& accesses) {
+// The rate at which frames and what the host moves for them take turns. The guide of the searches proves the
+// parts (sw/explore/BOUNDS.md, "The computer").
+double rate_of_turns(const BoardConfig& board, const FrameAccesses& accesses) {
+  const bool to_host = board.capture.destination == CaptureDestination::kHostMemory;
   const fpga::CoreConfig core = core_config(board);
   const fpga::BufferBases buffers = buffer_bases(board);
   const AllocationConfig& allocation = board.allocation;
-  const std::vector<ResourceBound> turn = turn_bounds(board, accesses);
-  std::uint64_t cycles = 0;
-  for (std::size_t frame = 0; frame < turn.size(); ++frame) {
+  const std::size_t inputs = allocation.left_image.size();
+  const std::size_t outputs = allocation.disparity.size();
+  const double cycle_ps = 1e6 / board.fpga.clock_mhz;
+  const bool is_free_running = board.cameras.trigger == CameraTrigger::kFreeRunning;
+  const capture::CameraTiming camera(
+      {board.image.width, board.image.height, board.cameras.frame_rate_hz, board.cameras.trigger});
+  const double capture = static_cast<double>(camera.last_pixel_ps()) / cycle_ps;  // all in cycles
+  const double picture = board.image.width / 4.0 * board.image.height *
+                         local_bus_cycles_a_word(board, board.bridge.local_clock_mhz);
+  // The time from one capture into a buffer to the next one, if so many cycles pass between them.
+  const auto between_captures = [&](double cycles) {
+    const double period = static_cast<double>(camera.frame_ps(1)) / cycle_ps;
+    return is_free_running ? std::ceil(cycles / period - 1e-9) * period : cycles;
+  };
+  const std::uint64_t turn = allocation_period_frames(board);
+  double one_after_another = 0;
+  double of_inputs = 0;
+  double of_outputs = 0;
+  for (std::uint64_t frame = 0; frame < turn; ++frame) {
+    const auto alone = static_cast<double>(least_frame_cycles(board, accesses, frame));
     // With two buffers the frame before has those of the next one.
     const fpga::Placements next = placements_of(core, buffers.of_frame(frame + 1));
     BankAccesses of_frame(board);
     of_frame.add_core(placements_of(core, buffers.of_frame(frame)), accesses);
-    if (allocation.left_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kLeft)]);
-    if (allocation.right_image.size() == 2) of_frame.add_writes(next[fpga::pixel_group(fpga::Side::kRight)]);
-    if (allocation.disparity.size() == 2) of_frame.add_reads(next[fpga::kResultGroup]);
-    std::uint64_t longest = turn[frame].cycles;
+    for (const fpga::Side side : fpga::kSides) {
+      if (inputs == 2) of_frame.add_writes(next[fpga::pixel_group(side)]);
+    }
+    if (outputs == 2) of_frame.add_reads(next[fpga::kResultGroup]);
+    double longest = alone;
     for (std::size_t bank = 0; bank < board.banks.size(); ++bank)
-      longest = std::max(longest, of_frame.cycles(bank));
-    cycles += longest;
+      longest = std::max(longest, static_cast<double>(of_frame.cycles(bank)));
+    const double moved = (inputs == 1 ? 2 * picture : 0) + (outputs == 1 ? picture : 0);
+    one_after_another += std::max(longest + moved, inputs == 1 && !to_host ? alone + capture : 0);
+    of_inputs += to_host ? 2 * picture + alone : between_captures(capture + alone);
+    of_outputs += alone + picture;
   }
-  return board.fpga.clock_mhz * 1e6 * static_cast<double>(turn.size()) / static_cast<double>(cycles);
+  const auto frames = static_cast<double>(turn);
+  double longest = std::max({one_after_another, of_inputs / static_cast<double>(inputs),
+                             of_outputs / static_cast<double>(outputs)});
+  if (to_host)
+    longest = std::max(longest, frames * between_captures(capture + 2 * picture) / board.capture.host_frames);
+  return board.fpga.clock_mhz * 1e6 * frames / longest;
 }
 
 // The rows of a bank of sdram that accesses to these groups touch: bit r for row r.
@@ -244,13 +269,24 @@ std::size_t touched_rows(const BoardConfig& board, const FrameAccesses& accesses
                          const fpga::Placements& placements, std::size_t bank,
                          const std::vector<std::size_t>& groups) {
   const auto row_words = static_cast<std::uint32_t>(board.banks[bank].sdram->row_words);
-  std::vector<bool> touched(static_cast<std::size_t>(board.banks[bank].words) / row_words + 1);
+  std::vector<bool> touched;
+  const auto touch = [&](std::size_t first, std::size_t last) {  // words
+    if (touched.size() <= last / row_words) touched.resize(last / row_words + 1);
+    for (std::size_t row = first / row_words; row <= last / row_words; ++row) touched[row] = true;
+  };
   for (const std::size_t group : groups) {
     const auto& rows = accesses.touched[group];
+    const fpga::Placement& buffer = placements[group];
+    for (std::size_t part = 0; rows.empty() && part < buffer.parts().size(); ++part) {
+      const std::size_t first = fpga::registers::first_word_of(buffer.parts()[part]);
+      const std::size_t words = buffer.rows_of_part(part, board.image.height) * buffer.row_words();
+      if (fpga::registers::bank_of(buffer.parts()[part]) != bank || words == 0) continue;
+      touch(first, first + words - 1);
+    }
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      if (placements[group].word(row, 0).bank != bank) continue;
+      if (buffer.word(row, 0).bank != bank) continue;
       for (std::size_t word = 0; word < rows[row].size(); ++word) {
-        if (rows[row][word]) touched[placements[group].word(row, word).word / row_words] = true;
+        if (rows[row][word]) touch(buffer.word(row, word).word, buffer.word(row, word).word);
       }
     }
   }
@@ -272,38 +308,6 @@ std::uint64_t sdram_cycles(const memory::SdramTiming& timing, std::uint64_t acce
         unrefreshed + static_cast<std::uint64_t>(timing.refresh_cycles) * (refreshes > 1 ? refreshes - 1 : 0);
   }
   return cycles;
-}
-
-// The rows that the slots of a side read, how often, and the words.
-void count_rows(const BoardConfig& board, fpga::Side side, const fpga::AccessPattern& pattern,
-                FrameAccesses& accesses) {
-  const fpga::CoreConfig core = core_config(board);
-  const fpga::CorePorts ports(core);
-  const auto height = static_cast<std::size_t>(core.height);
-  accesses.reads_of_row.resize(ports.core_size(), std::vector<std::uint64_t>(height));
-  const bool is_identity = pattern.is_identity();
-  const auto& of_table = pattern.table_accesses_of_rows();
-  const auto& of_image = pattern.pixel_accesses_of_rows();
-  auto& table_words = accesses.touched[fpga::lut_group(side)];
-  auto& image_words = accesses.touched[fpga::pixel_group(side)];
-  table_words.assign(height, std::vector<bool>(static_cast<std::size_t>(core.width)));
-  image_words.assign(height, std::vector<bool>(static_cast<std::size_t>(core.width) / 4));
-  for (std::size_t lane = 0; lane < ports.lanes(); ++lane) {
-    if (has_group(core, fpga::lut_group(side))) accesses.reads_of_row[ports.lut(side, lane)] = of_table[lane];
-    accesses.reads_of_row[ports.pixel(side, lane)] = of_image[lane];
-    for (std::size_t row = 0; row < height; ++row) {
-      if (of_table[lane][row] == 0) continue;
-      table_words[row].assign(table_words[row].size(), true);
-      for (int column = 0; column < core.width; ++column) {
-        const auto at = static_cast<int>(row);
-        if (!pattern.needs_pixel(column, at)) continue;
-        const std::uint32_t entry = is_identity ? 0 : pattern.entry(column, at);
-        const auto source_row = is_identity ? row : static_cast<std::size_t>(kernels::entry_row(entry));
-        const int source = is_identity ? column : kernels::entry_column(entry);
-        image_words[source_row][static_cast<std::size_t>(source) / kernels::kPixelsPerWord] = true;
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -361,28 +365,66 @@ fpga::AccessPatterns access_patterns(const BoardConfig& board, const Tables* tab
   return patterns;
 }
 
-FrameAccesses frame_accesses(const BoardConfig& board, const fpga::AccessPatterns& patterns) {
+FrameAccesses identity_accesses(const BoardConfig& board) {
   const fpga::CoreConfig core = core_config(board);
   const fpga::CorePorts ports(core);
+  const fpga::FrameGeometry geometry(core);
+  const auto height = static_cast<std::size_t>(core.height);
+  const std::uint64_t columns = geometry.columns_per_strip();
+  const std::uint64_t pixels =
+      core.pixel_cache == fpga::PixelCache::kWord ? columns / kernels::kPixelsPerWord : columns;
+  std::vector<std::vector<std::uint64_t>> slots(ports.lanes(),
+                                                std::vector<std::uint64_t>(height));  // a column
+  for (int strip = 0; strip < geometry.strips; ++strip) {
+    for (int k = 0; k < geometry.slots_per_column; ++k) {
+      const int row = geometry.first_row_of(strip) + k;
+      if (geometry.is_inside(row))
+        ++slots[static_cast<std::size_t>(k % core.lanes)][static_cast<std::size_t>(row)];
+    }
+  }
   FrameAccesses accesses;
   accesses.reads.resize(ports.core_size());
-  const bool needs_rows =
-      !core.stripes.empty() || std::any_of(board.banks.begin(), board.banks.end(),
-                                           [](const BankConfig& bank) { return bank.sdram.has_value(); });
+  if (!core.stripes.empty() || std::any_of(board.banks.begin(), board.banks.end(),
+                                           [](const BankConfig& bank) { return bank.sdram.has_value(); }))
+    accesses.reads_of_row.resize(ports.core_size(), std::vector<std::uint64_t>(height));
+  for (memory::Port port = 0; port < ports.result(); ++port) {
+    if (!has_group(core, ports.group_of(port))) continue;
+    const std::uint64_t a_slot = ports.group(port).stage == fpga::PortStage::kLutReader ? columns : pixels;
+    for (std::size_t row = 0; row < height; ++row) {
+      const std::uint64_t reads = slots[ports.lane_of(port)][row] * a_slot;
+      accesses.reads[port] += reads;
+      if (!accesses.reads_of_row.empty()) accesses.reads_of_row[port][row] = reads;
+    }
+  }
+  return accesses;
+}
+
+FrameAccesses frame_accesses(const BoardConfig& board, const fpga::AccessPatterns& patterns) {
+  FrameAccesses accesses = identity_accesses(board);
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::CorePorts ports(core);
   for (const fpga::Side side : fpga::kSides) {
     const fpga::AccessPattern& pattern = patterns[fpga::index_of(side)];
-    for (int lane = 0; lane < core.lanes; ++lane) {
-      const auto number = static_cast<std::size_t>(lane);
-      if (has_group(core, fpga::lut_group(side)))  // joint tables: the left ones read for both sides
-        accesses.reads[ports.lut(side, number)] = pattern.table_accesses(lane);
-      accesses.reads[ports.pixel(side, number)] = pattern.pixel_accesses(lane);
+    if (pattern.is_identity()) continue;
+    for (std::size_t lane = 0; lane < ports.lanes(); ++lane) {
+      const memory::Port port = ports.pixel(side, lane);
+      accesses.reads[port] = pattern.pixel_accesses(static_cast<int>(lane));
+      if (!accesses.reads_of_row.empty())
+        accesses.reads_of_row[port] = pattern.pixel_accesses_of_rows()[lane];
     }
-    if (needs_rows) count_rows(board, side, pattern, accesses);
-  }
-  if (needs_rows) {
-    const auto height = static_cast<std::size_t>(core.height);
-    const std::vector<bool> row(static_cast<std::size_t>(core.width) / 4, true);
-    accesses.touched[fpga::kResultGroup].assign(height, row);
+    auto& touched = accesses.touched[fpga::pixel_group(side)];
+    if (!accesses.reads_of_row.empty())
+      touched.assign(static_cast<std::size_t>(core.height),
+                     std::vector<bool>(static_cast<std::size_t>(core.width) / kernels::kPixelsPerWord));
+    for (int row = 0; row < core.height; ++row) {
+      accesses.pixels_of_row[index_of(side)].push_back(pattern.pixel_accesses_of_slots(row));
+      for (int column = 0; column < core.width && !touched.empty(); ++column) {
+        if (!pattern.needs_pixel(column, row)) continue;
+        const std::uint32_t entry = pattern.entry(column, row);
+        touched[static_cast<std::size_t>(kernels::entry_row(entry))]
+               [static_cast<std::size_t>(kernels::entry_column(entry)) / kernels::kPixelsPerWord] = true;
+      }
+    }
   }
   return accesses;
 }
@@ -548,8 +590,7 @@ Bound core_bound(const BoardConfig& board, const FrameAccesses& accesses,
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses) {
   Bound bound = core_bound(board, accesses);
   add_system_bound(board, accesses, true, bound);
-  if (board.capture.destination == CaptureDestination::kHostMemory) return *bound.system;
-  return std::min(*bound.system, contended_rate(board, accesses));
+  return std::min(*bound.system, rate_of_turns(board, accesses));
 }
 
 }  // namespace stereotlm::platform

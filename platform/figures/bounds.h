@@ -22,8 +22,11 @@ struct FrameAccesses {
   std::vector<std::uint64_t> reads;  // [port]
   // Of boards with stripes or sdram: [port][row of the buffer]: reads of that row.
   std::vector<std::vector<std::uint64_t>> reads_of_row;
-  // Of boards with sdram: [port group][row of the buffer][word of the row]: whether it is accessed.
+  // Of boards with sdram: [port group][row of the buffer][word of the row]: whether it is accessed. Empty if
+  // each word is.
   std::array<std::vector<std::vector<bool>>, fpga::kCoreGroupCount> touched;
+  // [side][row]: pixel reads of the slots of one rectified row. Empty if each pixel is its own source.
+  std::array<std::vector<std::uint64_t>, 2> pixels_of_row;
 };
 
 // Which slots of a frame access their pixels. `tables`: null for the identity; else they fit the board, and
@@ -34,6 +37,9 @@ FrameAccesses frame_accesses(const BoardConfig& board, const fpga::AccessPattern
 inline FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
   return frame_accesses(board, access_patterns(board, &tables));
 }
+
+// The same for identity tables, which it does not read: it takes some microseconds.
+FrameAccesses identity_accesses(const BoardConfig& board);
 
 // The reads and writes that the core makes in each bank in frames 0..frames-1. The other members are 0.
 std::vector<BankStatistics> accesses_of_banks(const BoardConfig& board, const FrameAccesses& accesses,
@@ -132,7 +138,8 @@ void add_system_bound(const BoardConfig& board, const FrameAccesses& accesses, b
                       Bound& bound, std::optional<std::uint64_t> frames = std::nullopt);
 
 // An upper bound for the steady rate of a whole computer that loses no pixels: bound.system of core_bound()
-// and add_system_bound(), or a smaller one that also counts what the host moves in a bank beside a frame.
+// and add_system_bound(), or a smaller one of how frames, captures, copies and read-backs take turns. For
+// searches, as the bounds of search_bounds.h: proofs are in sw/explore/BOUNDS.md.
 double steady_bound(const BoardConfig& board, const FrameAccesses& accesses);
 
 }  // namespace stereotlm::platform

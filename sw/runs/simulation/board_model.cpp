@@ -1,6 +1,5 @@
 #include "sw/runs/simulation/board_model.h"
 
-#include <algorithm>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -8,8 +7,8 @@
 #include <utility>
 
 #include "platform/assembly/preloaded_system.h"
-#include "platform/figures/bounds.h"
 #include "platform/figures/derived_figures.h"
+#include "platform/figures/search_bounds.h"
 #include "sw/explore/optimise/key_effects.h"
 #include "sw/runs/simulation/simulate_point.h"
 
@@ -77,10 +76,7 @@ explore::BoardModel board_model(const platform::Tables* tables) {
     return platform::waitless_frame_cycles(board, all->patterns(board), 1).front();
   };
   model.contended_cycles = [all](const BoardConfig& board) {
-    std::uint64_t most = 0;
-    for (const platform::ResourceBound& bound : platform::frame_bounds(board, all->accesses(board), 0))
-      most = std::max(most, bound.cycles);
-    return most;
+    return platform::least_frame_cycles(board, all->accesses(board), 0);
   };
   model.cycles = [all](const BoardConfig& board, std::uint64_t frames) {
     const std::vector<std::uint64_t> cycles =

@@ -387,7 +387,8 @@ std::string steady_problems(std::uint64_t seed) {
     process::Child child([&](const process::Child::Tell& tell) {
       const platform::Statistics statistics = run(is_long ? kMany : explore::frames_of({true, 0, ""}, board));
       tell(fmt::format("{} {} {}", statistics.frames_per_second.steady->frames_per_second,
-                       statistics.frames_per_second.steady->uncertainty, fmt::join(statistics.failed, "; ")));
+                       statistics.frames_per_second.steady->uncertainty, fmt::join(statistics.failed, "; ")) +
+           above_bound(board, tables, statistics));
     });
     texts[is_long ? 1 : 0] = child.next().value();
     child.next();

@@ -7,7 +7,9 @@
 #include <optional>
 #include <ostream>
 
+#include "models/capture/camera_timing.h"
 #include "platform/assembly/preloaded_system.h"
+#include "platform/figures/search_bounds.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {
@@ -333,7 +335,8 @@ class SteadyBound : public ::testing::Test {
     board.fpga.clock_mhz = 1;
     board.cameras.frame_rate_hz = 1000;
   }
-  double bound() const { return steady_bound(board, frame_accesses(board, identity_tables(board))); }
+  double bound() const { return steady_bound(board, identity_accesses(board)); }
+  uint64_t least(uint64_t frame) const { return least_frame_cycles(board, identity_accesses(board), frame); }
 
   const uint64_t reads = uint64_t{16} * (60 * 3 - 2);  // of a picture
   const uint64_t words = 16 * 60 / 4;                  // of a picture or a result
@@ -346,43 +349,62 @@ TEST_F(SteadyBound, IsThatOfTheWholeComputer) {
   EXPECT_EQ(bound(), 10);
 }
 
-// What the core reads and writes, results that are read back, and pictures that are captured.
+// What the core reads and writes, results that are read back, and pictures that are captured. With three
+// buffers, no picture and no result is known to be moved beside a certain frame.
 TEST_F(SteadyBound, CountsTheWordsThatTheHostMovesInABank) {
-  board.allocation.left_image = {"bank0"};
-  board.allocation.right_image = {"bank2"};
-  board.allocation.disparity = {"bank0", "bank3"};
-  const uint64_t turn = 2 * (reads + words) + 2 * words;
-  const Tables tables = identity_tables(board);
-  ASSERT_GT(turn, largest(board, tables, 0) + largest(board, tables, 1));
-  EXPECT_DOUBLE_EQ(bound(), 1e6 * 2 / static_cast<double>(turn));
+  board.allocation.left_image = {"bank0", "bank0", "bank0"};
+  board.allocation.right_image = {"bank2", "bank2", "bank2"};
+  board.allocation.disparity = {"bank0", "bank3", "bank0"};
+  const uint64_t turn = 3 * (reads + words) + 2 * 2 * words;
+  ASSERT_GT(turn, least(0) + least(1) + least(2));
+  EXPECT_DOUBLE_EQ(bound(), 1e6 * 3 / static_cast<double>(turn));
 }
 
 // While frame 0 runs, the picture of frame 1 comes into the bank of the left table, and the result of the
 // frame before is read from there. What is moved beside frame 1 goes to banks that it does not use.
 TEST_F(SteadyBound, CountsWhatTheHostMovesBesideAFrame) {
   board.cameras.frame_rate_hz = 400;
-  board.allocation = {{"bank0", "bank1"}, {"bank2"}, {"bank3", "bank1"}, "bank1", "bank4"};
-  const Tables tables = identity_tables(board);
+  board.allocation = {{"bank0", "bank1"}, {"bank2", "bank5"}, {"bank3", "bank1"}, "bank1", "bank4"};
   const uint64_t frame_0 = reads + words + words;
-  const uint64_t frame_1 = largest(board, tables, 1);
-  ASSERT_GT(frame_0, largest(board, tables, 0));
-  EXPECT_DOUBLE_EQ(bound(), 1e6 * 2 / static_cast<double>(frame_0 + frame_1));
-  // With three buffers, no picture and no result is known to be moved beside a certain frame.
-  board.allocation.left_image = {"bank0", "bank1", "bank0"};
-  board.allocation.disparity = {"bank3", "bank1", "bank3"};
-  Bound others = core_bound(board, tables);
-  add_system_bound(board, frame_accesses(board, tables), true, others);
-  EXPECT_DOUBLE_EQ(bound(), *others.system);
+  ASSERT_GT(frame_0, least(0));
+  const double turn = static_cast<double>(frame_0 + least(1));
+  EXPECT_DOUBLE_EQ(bound(), 1e6 * 2 / turn);
+  board.capture.destination = CaptureDestination::kHostMemory;
+  EXPECT_DOUBLE_EQ(bound(), 1e6 * 2 / turn);
 }
 
 TEST_F(SteadyBound, CountsTheReadsOrTheWritesOfABankWithSeparatePorts) {
-  board.allocation = {{"bank0"}, {"bank0"}, {"bank0"}, "bank0", "bank0"};
-  board.banks[0].words = 4096;
+  const std::vector<BufferBanks> three(3, "bank0");
+  board.allocation = {three, three, three, "bank0", "bank0"};
+  board.banks[0].words = 8192;
   board.banks[0].kind = memory::BankKind::kQdr;
   // Pictures, tables and the results that are read back; all writes are fewer.
   const uint64_t cycles = 4 * reads + words;
-  ASSERT_GT(cycles, largest(board, identity_tables(board), 0));
+  ASSERT_GT(cycles, least(0));
   EXPECT_DOUBLE_EQ(bound(), 1e6 / static_cast<double>(cycles));
+}
+
+// Nothing is captured or read back beside a frame that has the only buffer.
+TEST_F(SteadyBound, CountsCapturesAndReadBacksBetweenFramesThatHaveOneBuffer) {
+  const double a_word = local_bus_cycles_a_word(board, board.bridge.local_clock_mhz);
+  const double read_back = a_word * static_cast<double>(words);
+  board.allocation.disparity = {"bank5"};
+  const auto frame = static_cast<double>(least(0));
+  EXPECT_DOUBLE_EQ(bound(), 1e6 / (frame + read_back));
+  board.allocation.disparity = {"bank5", "bank5", "bank5"};
+  board.allocation.left_image = {"bank0"};
+  board.allocation.right_image = {"bank2"};
+  board.cameras.trigger = CameraTrigger::kOnDemand;
+  const capture::CameraTiming camera({16, 60, 1000, CameraTrigger::kOnDemand});
+  const double capture = static_cast<double>(camera.last_pixel_ps()) / 1e6;
+  EXPECT_DOUBLE_EQ(bound(), 1e6 / (frame + capture));
+  board.cameras.trigger = CameraTrigger::kFreeRunning;  // 1000 cycles a period
+  EXPECT_DOUBLE_EQ(bound(), 1000 / std::ceil((frame + capture) / 1000));
+  board.capture.destination = CaptureDestination::kHostMemory;
+  EXPECT_DOUBLE_EQ(bound(), 1e6 / (frame + 2 * read_back));
+  board.capture.host_frames = 1;
+  board.cameras.frame_rate_hz = 250;  // 4000 cycles a period
+  EXPECT_DOUBLE_EQ(bound(), 250 / std::ceil((4 * capture + 2 * read_back) / 4000));
 }
 
 }  // namespace
