@@ -85,7 +85,7 @@ def encoded(figure, kind, dpi=200):
 
 # The points of a database.
 
-APPLICATION_ID, LAYOUT = 0x53544C4D, 2
+APPLICATION_ID, LAYOUT = 0x53544C4D, 3
 PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
 LANES = r"((?:left|right)_(?:lut|pixel))\.\d+"  # the name of a lane: "left_lut.3"
 LOST = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
@@ -165,7 +165,7 @@ class Points:
         self._rows = read("points").sort_values("hash", ignore_index=True)
         self.total = len(self._rows)
         self.blame = read("blame")
-        known = set(read("keys").name)
+        known = {name for name, in database.execute("SELECT name FROM columns WHERE is_key")}
         self.keys = [name for name in self._rows if name in known]
 
     def _keep(self, condition, problem):
