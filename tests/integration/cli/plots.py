@@ -28,7 +28,7 @@ vary:
   ssram.default.kind: [zbt_pipelined, zbt_flow_through]
 """
 # Beginnings of the columns of made databases that are no keys.
-FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left", "cameras.right")
+FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "lost_pixels")
 
 
 def quoted(name):
