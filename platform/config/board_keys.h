@@ -99,6 +99,11 @@ std::string rule_text(std::string_view path);
 // `path` with NAME in place of a bank's name: `ssram.banks.NAME.words` for `ssram.banks.bank0.words`.
 std::string schema_path(const std::string& path);
 
+// The known path nearest to an unknown one; empty if none is near. The distance is the least of the edit
+// distance behind the common sections, and that of the last names + 2. So the right name in a wrong section
+// is nearer than most wrong names in the right section.
+std::string nearest_path(const std::string& path, const std::vector<std::string>& known);
+
 // The message for an unknown path: "unknown key; nearest known key: PATH", or a text that says that no known
 // key is near.
 std::string unknown_key_text(const std::string& path);

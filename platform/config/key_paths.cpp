@@ -21,28 +21,16 @@ std::optional<std::size_t> likely_path_distance(std::string_view path, std::stri
   return likely_distance(path, known);
 }
 
-// The known path nearest to an unknown one; empty if no path is near. The distance is the least of
-// likely_path_distance() and likely_distance() of the last names + 2. So the right key in a wrong section is
-// nearer than most wrong keys in the right section. Below `ssram.banks` every name counts as a bank's.
-std::string nearest_path(const std::string& path) {
+// The known key nearest to an unknown one. Below `ssram.banks` every name counts as a bank's.
+std::string nearest_key(const std::string& path) {
   const std::string schema = schema_path(path);
-  std::string best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  const auto offer = [&](const std::string& known) {
-    if (is_below(schema, known) || schema == known) return;  // a section that holds `path`, or of a bank
-    auto distance = likely_path_distance(schema, known);
-    const auto moved = likely_distance(last_part(schema), last_part(known));
-    if (moved && (!distance || *moved + 2 < *distance)) distance = *moved + 2;
-    if (!distance || *distance >= best_distance) return;
-    best = known;
-    best_distance = *distance;
-  };
-  offer("extends");
+  std::vector<std::string> known = {"extends"};
   for (const Key& key : board_keys()) {
     for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', dot + 1))
-      offer(key.path.substr(0, dot));
-    offer(key.path);
+      known.push_back(key.path.substr(0, dot));
+    known.push_back(key.path);
   }
+  std::string best = nearest_path(schema, known);
   const std::string name = "ssram.banks.NAME";
   if (is_below(best, name) && is_below(schema, name))
     best = path.substr(0, path.find('.', name.size() - 4)) + best.substr(name.size());
@@ -118,8 +106,23 @@ std::string schema_path(const std::string& path) {
   return banks + "NAME" + (end == std::string::npos ? "" : path.substr(end));
 }
 
+std::string nearest_path(const std::string& path, const std::vector<std::string>& known) {
+  const std::string* best = nullptr;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  for (const std::string& each : known) {
+    if (is_below(path, each) || path == each) continue;  // a section that holds `path`, or of a bank
+    auto distance = likely_path_distance(path, each);
+    const auto moved = likely_distance(last_part(path), last_part(each));
+    if (moved && (!distance || *moved + 2 < *distance)) distance = *moved + 2;
+    if (!distance || *distance >= best_distance) continue;
+    best = &each;
+    best_distance = *distance;
+  }
+  return best == nullptr ? "" : *best;
+}
+
 std::string unknown_key_text(const std::string& path) {
-  const std::string nearest = nearest_path(path);
+  const std::string nearest = nearest_key(path);
   return nearest.empty() ? "unknown key, and no known key is near"
                          : "unknown key; nearest known key: " + nearest;
 }

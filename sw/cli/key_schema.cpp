@@ -202,6 +202,17 @@ Json plan_schema() {
   Json varied = assignments(values);
   varied["properties"]["run.source"] = values(source);
   varied["properties"]["run.frames"] = values(frames);
+  const Json pair = {{"type", "object"},
+                     {"properties",
+                      {{"left", text},
+                       {"right", text},
+                       {"truth", text},
+                       {"scale", {{"type", "number"}, {"exclusiveMinimum", 0}}}}},
+                     {"required", {"left", "right", "truth"}},
+                     {"additionalProperties", false}};
+  const auto list = [](const Json& items) {
+    return Json{{"type", "array"}, {"items", items}, {"minItems", 1}};
+  };
   Json schema = schema_head("Plan of a sweep or a search of stereotlm", "plan");
   schema.update({
       {"type", "object"},
@@ -210,7 +221,13 @@ Json plan_schema() {
          {{"description", "a preset, or the path of a board file"}, {"type", "string"}, {"minLength", 1}}},
         {"run",
          {{"type", "object"},
-          {"properties", {{"source", source}, {"frames", frames}, {"calibration", text}}},
+          {"properties",
+           {{"source", source},
+            {"frames", frames},
+            {"calibration", text},
+            {"pairs", list(pair)},
+            {"synthetic", list({{"type", "integer"}, {"minimum", 0}})}}},
+          {"not", {{"required", {"pairs", "synthetic"}}}},
           {"additionalProperties", false}}},
         {"set", assignments([](const Json& value) { return value; })},
         {"vary", varied},

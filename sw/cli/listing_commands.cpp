@@ -8,6 +8,7 @@
 #include "sw/cli/command.h"
 #include "sw/cli/key_schema.h"
 #include "sw/stats/document_schemas.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::cli {
 namespace {
@@ -77,9 +78,16 @@ struct KeysOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
-    if (schema.is_given() && json.is_given()) problems.add("--schema: does not go with --json");
+    if (!schema.is_given()) return;
+    for (const Option* const other : {&figures, static_cast<Option*>(&json), &word}) {
+      if (other->is_given()) problems.add("--schema: does not go with " + other->name());
+    }
   }
 
+  Option word = Option(this, "WORD", " ", "Only those with this text in their name, meaning or unit");
+  Option figures = Option(this, "--figures", "",
+                          "List the figures of the points of a sweep instead: the columns of its database "
+                          "that are no keys; NAME is that of a bank, port or buffer");
   Option schema = Option(this, "--schema", "NAME",
                          "Print a JSON Schema: of board files (`board`) or plans (`plan`), for editors, or "
                          "of what this command prints with --json",
@@ -87,21 +95,46 @@ struct KeysOptions : Options {
   JsonOption json{this};
 };
 
-std::string keys_json() {
-  Json list = Json::array();
-  for (const auto& key : platform::keys()) {
-    Json json = {{"key", key.path}, {"meaning", key.meaning}};
-    if (!key.unit.empty()) json["unit"] = key.unit;
-    json["range"] = key.rule.text;
-    list.push_back(std::move(json));
+// The keys, or with --figures the figures, which have no rule.
+std::vector<platform::Key> listed_keys(const KeysOptions& options) {
+  std::vector<platform::Key> all;
+  if (options.figures.is_given()) {
+    for (const stats::Figure& figure : stats::figures())
+      all.push_back({figure.name, figure.meaning, figure.unit, {}});
+  } else {
+    all = platform::keys();
   }
-  return json_text({{"schema", 1}, {"keys", std::move(list)}});
+  const std::string& word = options.word.text();
+  std::vector<platform::Key> found;
+  for (platform::Key& key : all) {
+    const std::string text = fmt::format("{}\n{}\n{}", key.path, key.meaning, key.unit);
+    if (text.find(word) != std::string::npos) found.push_back(std::move(key));
+  }
+  if (found.empty()) {
+    process::refuse(fmt::format(
+        "WORD = {}: {}", word,
+        options.figures.is_given() ? stats::unknown_figure_text(word) : platform::unknown_key_text(word)));
+  }
+  return found;
 }
 
-std::string keys_text() {
-  const auto keys = platform::keys();
+std::string keys_json(const KeysOptions& options) {
+  const bool is_figures = options.figures.is_given();
+  Json list = Json::array();
+  for (const auto& key : listed_keys(options)) {
+    Json json = {{is_figures ? "figure" : "key", key.path}, {"meaning", key.meaning}};
+    if (!key.unit.empty()) json["unit"] = key.unit;
+    if (!is_figures) json["range"] = key.rule.text;
+    list.push_back(std::move(json));
+  }
+  return json_text({{"schema", 1}, {is_figures ? "figures" : "keys", std::move(list)}});
+}
+
+std::string keys_text(const KeysOptions& options) {
+  const bool is_figures = options.figures.is_given();
+  const auto keys = listed_keys(options);
   std::size_t path_width = 0;
-  std::size_t unit_width = 0;
+  std::size_t unit_width = 4;
   for (const auto& key : keys) {
     path_width = std::max(path_width, key.path.size());
     unit_width = std::max(unit_width, key.unit.size());
@@ -110,17 +143,20 @@ std::string keys_text() {
   const auto head = [&](const std::string& path, const std::string& unit) {
     return fmt::format("{:<{}}  {:<{}}", path, path_width, unit, unit_width);
   };
-  std::string text = paragraph(head("key", "unit"), indent, "meaning; below it the range or allowed values");
+  std::string text =
+      is_figures ? paragraph(head("figure", "unit"), indent, "meaning")
+                 : paragraph(head("key", "unit"), indent, "meaning; below it the range or allowed values");
   for (const auto& key : keys) {
-    text += paragraph(head(key.path, key.unit), indent, key.meaning) + paragraph("", indent, key.rule.text);
+    text += paragraph(head(key.path, key.unit), indent, key.meaning);
+    if (!is_figures) text += paragraph("", indent, key.rule.text);
   }
   return text;
 }
 
 int print_keys(const KeysOptions& options) {
   process::print(options.schema.is_given() ? json_text(schema_of(options.schema.text()))
-                 : options.json.is_given() ? keys_json()
-                                           : keys_text());
+                 : options.json.is_given() ? keys_json(options)
+                                           : keys_text(options));
   return kDone;
 }
 
@@ -131,8 +167,8 @@ void add_boards(Commands& commands) {
 }
 
 void add_keys(Commands& commands) {
-  add_command(commands, "keys", "List every key of a board file with its meaning, unit and range",
-              print_keys);
+  add_command(commands, "keys",
+              "List every key of a board file, or every figure of a sweep, with its meaning", print_keys);
 }
 
 }  // namespace stereotlm::cli

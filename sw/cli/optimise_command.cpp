@@ -406,6 +406,9 @@ bool run(Search& search, const explore::SearchStore* store, std::optional<double
 
 int optimise(const OptimiseOptions& options) {
   Question question = question_of(options);
+  if (!question.plan->pairs().empty() || !question.plan->seeds().empty())
+    process::refuse(
+        "run.pairs, run.synthetic: a search does not compute accuracy: leave them out, and sweep the front");
   const auto calibration = calibration_of(*question.plan, options.calibration, options.sent);
   const explore::Plan& plan = *question.plan;
   const explore::BoardModel model = runs::board_model(calibration ? &calibration->tables : nullptr);

@@ -34,8 +34,8 @@ constexpr const char* kPlotFooter =
     "  units        the same against the number of modules, matcher.units\n"
     "  banks        frames per second against the banks that the allocation uses\n"
     "  stalls       cycles in which each port waits, by their cause\n"
-    "  pareto       two columns of the database, and the points that no other point dominates;\n"
-    "               beside the columns there are banks_used and units_used\n"
+    "  pareto       two or three columns of the database (the third as colour), and the points that no\n"
+    "               other point dominates; beside the columns there are banks_used and units_used\n"
     "Points that differ in keys besides the x axis are on separate lines; more than can be distinguished\n"
     "are drawn as an envelope. Of more than 16 points, stalls shows those that wait most. DIR must be\n"
     "empty or hold only such files, which are replaced. The script that draws is plots/figures.py in\n"
@@ -50,8 +50,8 @@ struct PlotOptions : Options {
                       {required("the folder of the figures")});
   Option only = Option(this, "--only", "KEY=VALUE", "Only points with that value; once for each key", {},
                        Takes::kRepeated);
-  Option pareto = Option(this, "--pareto", "X:SENSE,Y:SENSE",
-                         "Two columns, each with min or max: what is better; default "
+  Option pareto = Option(this, "--pareto", "X:SENSE,Y:SENSE,..",
+                         "Two or three columns, each with min or max: what is better; default "
                          "area.slices:min,frames_per_second.core:max");
   Option format = Option(this, "--format", "F,..", "png, svg, pdf, or several with commas; default png,svg");
   Option size =

@@ -212,6 +212,9 @@ std::optional<runs::CalibrationInput> calibration_of(explore::Plan& plan, const 
                                 ? option.name()
                                 : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
   process::Problems problems;
+  if (!plan.seeds().empty())
+    problems.add(fmt::format("{}: does not go with {}: its tables would move the made scenes", named,
+                             explore::kSyntheticPath));
   auto calibration = runs::load_calibration(path, nullptr, problems, named, sent);
   if (calibration) {
     const calib::Rig& rig = calibration->calibration->rig;

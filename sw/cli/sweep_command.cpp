@@ -19,6 +19,7 @@
 #include "sw/process/client.h"
 #include "sw/process/command.h"
 #include "sw/runs/progress.h"
+#include "sw/runs/simulation/point_quality.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/calibration_input.h"
 
@@ -170,12 +171,14 @@ constexpr const char* kSweepFooter =
     "  source       preloaded, the core alone, fed by an ideal host (the default of a plan), or camera,\n"
     "               the whole computer (the default of run, explain, conflicts and allocate)\n"
     "  frames       to deliver: by default one turn of the allocation's lists, with cameras 12 more\n"
-    "  calibration  F.yaml of stereotlm calibrate: the tables; by default they are the identity\n\n"
+    "  calibration  F.yaml of stereotlm calibrate: the tables; by default they are the identity\n"
+    "  pairs        [{left: F, right: F, truth: F, scale: 4}, ..]: accuracy.* over all these pictures\n"
+    "  synthetic    [1, 2, ..]: accuracy.* over the first frames of the made scenes of these seeds\n\n"
     "Each point is a row of table `points` of DB, an SQLite database: its status, the reason if it is not\n"
-    "ok, the board in full, and a column for each key and for each figure of stats.json; waits by port,\n"
-    "bank and cause are in table `blame`. For instance\n"
-    "  sqlite3 DB \"SELECT name FROM pragma_table_info('points')\"      # all columns\n"
-    "  sqlite3 -box DB 'SELECT \"matcher.window\", \"frames_per_second.core\" FROM points ORDER BY 1'\n"
+    "ok, the board in full, and a column for each key and for each figure (keys --figures). View `plain` is\n"
+    "the same with names that need no quotes. Waits by port, bank and cause are in table `blame`. Such as\n"
+    "  sqlite3 -box DB 'SELECT name, unit, meaning FROM columns WHERE varied'\n"
+    "  sqlite3 -box DB 'SELECT matcher_window, frames_per_second_core FROM plain ORDER BY 1'\n"
     "Points that DB holds already are not run again: after an interruption, give the same command. To try\n"
     "again what has failed:\n"
     "  sqlite3 DB \"DELETE FROM points WHERE status = 'failed'\"\n\n"
@@ -276,11 +279,13 @@ void prepare(const SweepCommandOptions& options, const explore::SweepOptions& sw
 }
 
 explore::SweepCounts sweep_here(const SweepCommandOptions& options, const explore::Plan& plan,
-                                const std::optional<runs::CalibrationInput>& calibration) {
+                                const std::optional<runs::CalibrationInput>& calibration,
+                                runs::PointQuality quality) {
   const explore::SweepOptions sweep = options.sweep();
   prepare(options, sweep, plan);
   runs::PointSimulator simulator =
       calibration ? runs::PointSimulator(calibration->tables) : runs::PointSimulator();
+  simulator.judge(std::move(quality));
   runs::ProgressLine progress(fmt::format("{} points are simulated, or left out", plan.size()));
   auto next_write = std::chrono::steady_clock::now() + kBetweenCounts;
   const auto show = [&](const explore::SweepCounts& done) {
@@ -371,8 +376,18 @@ int sweep(const SweepCommandOptions& options) {
   if (!plan.wishes_place().empty())
     process::refuse(plan.wishes_place() + ": of a search: stereotlm optimise takes this plan");
   const auto calibration = calibration_of(plan, options.calibration, options.sent);
-  const explore::SweepCounts counts = options.is_slurm() ? sweep_on_slurm(options, plan, calibration)
-                                                         : sweep_here(options, plan, calibration);
+  process::Problems problems;
+  if (options.is_slurm() && !plan.pairs().empty()) {
+    problems.add(
+        fmt::format("{}: {}: not with --launcher slurm: its tasks work on copies of all files, and "
+                    "pictures are not copied; use --shard I/N and merge, or made scenes ({})",
+                    plan.pairs().front().place, explore::kPairsPath, explore::kSyntheticPath));
+  }
+  runs::PointQuality quality(plan, problems);
+  problems.check();
+  const explore::SweepCounts counts = options.is_slurm()
+                                          ? sweep_on_slurm(options, plan, calibration)
+                                          : sweep_here(options, plan, calibration, std::move(quality));
   return report(counts, options);
 }
 

@@ -49,15 +49,11 @@ std::optional<double> percent(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth) {
+void AccuracyCounts::add(const kernels::GrayImage& disparity, const media::Truth& truth) {
   if (disparity.width != truth.width || disparity.height != truth.height) {
     throw std::invalid_argument(fmt::format("truth = {}x{}: must be as large as the disparity image, {}x{}",
                                             truth.width, truth.height, disparity.width, disparity.height));
   }
-  std::uint64_t visible = 0;
-  std::uint64_t answered = 0;
-  std::uint64_t bad_1 = 0;
-  std::uint64_t bad_2 = 0;
   for (int y = 0; y < disparity.height; ++y) {
     const std::vector<bool> counts = known_and_visible(truth, y);
     for (int x = 0; x < disparity.width; ++x) {
@@ -71,7 +67,16 @@ Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth
       bad_2 += error > 2 ? 1U : 0U;
     }
   }
+}
+
+Accuracy AccuracyCounts::accuracy() const {
   return {percent(bad_1, answered), percent(bad_2, answered), percent(answered, visible)};
+}
+
+Accuracy accuracy(const kernels::GrayImage& disparity, const media::Truth& truth) {
+  AccuracyCounts counts;
+  counts.add(disparity, truth);
+  return counts.accuracy();
 }
 
 }  // namespace stereotlm::stats

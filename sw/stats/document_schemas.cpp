@@ -322,7 +322,16 @@ Schema keys_schema() {
       {"unit?", text(), "absent if the value has none"},
       {"range", text(), "the range or the allowed values, in words"},
   });
-  return document_of("What `stereotlm keys --json` prints", {{"keys", list_of(key, 1)}});
+  const Schema figure = object_of({
+      {"figure", text(), "a column of a sweep that is no key; NAME stands for that of a bank, port, .."},
+      {"meaning", text()},
+      {"unit?", text(), "absent if the value has none"},
+  });
+  Schema schema =
+      document_of("What `stereotlm keys --json` prints",
+                  {{"keys?", list_of(key, 1)}, {"figures?", list_of(figure, 1), "with --figures"}});
+  schema["oneOf"] = {{{"required", {"keys"}}}, {{"required", {"figures"}}}};
+  return schema;
 }
 
 Schema optimise_schema() {

@@ -14,10 +14,14 @@ using stats::Field;
 
 constexpr auto fields_of(const Area* /*type*/) {
   return std::tuple(
-      Field{"slices", &Area::slices}, Field{"slices_percent", &Area::slices_percent},
-      Field{"luts", &Area::luts}, Field{"flip_flops", &Area::flip_flops},
-      Field{"block_rams", &Area::block_rams}, Field{"block_rams_percent", &Area::block_rams_percent},
-      Field{"multipliers", &Area::multipliers}, Field{"multipliers_percent", &Area::multipliers_percent},
+      Field{"slices", &Area::slices, "of the FPGA that the core takes"},
+      Field{"slices_percent", &Area::slices_percent, "of the slices of fpga.device"},
+      Field{"luts", &Area::luts, "look-up tables that the core takes"},
+      Field{"flip_flops", &Area::flip_flops, "that the core takes"},
+      Field{"block_rams", &Area::block_rams, "that the core takes"},
+      Field{"block_rams_percent", &Area::block_rams_percent, "of the block RAMs of fpga.device"},
+      Field{"multipliers", &Area::multipliers, "that the core takes"},
+      Field{"multipliers_percent", &Area::multipliers_percent, "of the multipliers of fpga.device"},
       Field{"pins", &Area::pins, "only with fpga.package", stats::from_one},
       Field{"pins_percent", &Area::pins_percent, "of the pins of fpga.package"});
 }
@@ -31,44 +35,57 @@ using stats::Part;
 
 constexpr auto fields_of(const BankEnergyStatistics* /*type*/) {
   using Bank = BankEnergyStatistics;
-  return std::tuple(
-      Field{"accesses", &Bank::accesses}, Field{"rows_opened", &Bank::rows_opened, "only of sdram"},
-      Field{"refreshes", &Bank::refreshes, "only of sdram"}, Field{"energy_pj", &Bank::energy_pj},
-      Field{"energy_percent", &Bank::energy_percent, "of all banks", stats::percentage});
+  return std::tuple(Field{"accesses", &Bank::accesses, "reads and writes in energy.time_ps"},
+                    Field{"rows_opened", &Bank::rows_opened, "only of sdram"},
+                    Field{"refreshes", &Bank::refreshes, "only of sdram"},
+                    Field{"energy_pj", &Bank::energy_pj, "of the bank in energy.time_ps"},
+                    Field{"energy_percent", &Bank::energy_percent, "of all banks", stats::percentage});
 }
 
 constexpr auto fields_of(const BufferStatistics* /*type*/) {
-  return std::tuple(Field{"name", &BufferStatistics::name}, Field{"bytes", &BufferStatistics::bytes},
-                    Field{"megabytes_per_frame", &BufferStatistics::megabytes_per_frame});
+  return std::tuple(
+      Field{"name", &BufferStatistics::name},
+      Field{"bytes", &BufferStatistics::bytes, "read and written in energy.time_ps"},
+      Field{"megabytes_per_frame", &BufferStatistics::megabytes_per_frame, "read and written, 10^6 bytes"});
 }
 
 constexpr auto fields_of(const EnergyStatistics* /*type*/) {
   using Energy = EnergyStatistics;
-  return std::tuple(
-      Field{"time_ps", &Energy::time_ps}, Field{"memory_pj", &Energy::memory_pj},
-      Field{"memory_mj_per_frame", &Energy::memory_mj_per_frame}, Field{"memory_mw", &Energy::memory_mw},
-      Field{"megabytes_per_frame", &Energy::megabytes_per_frame}, Field{"buffers", &Energy::buffers});
+  return std::tuple(Field{"time_ps", &Energy::time_ps,
+                          "the counted cycles; with cameras from power-up to the last delivery"},
+                    Field{"memory_pj", &Energy::memory_pj, "of all banks in energy.time_ps"},
+                    Field{"memory_mj_per_frame", &Energy::memory_mj_per_frame, "of all banks for a frame"},
+                    Field{"memory_mw", &Energy::memory_mw, "mean power of all banks"},
+                    Field{"megabytes_per_frame", &Energy::megabytes_per_frame, "of all buffers, 10^6 bytes"},
+                    Field{"buffers", &Energy::buffers});
 }
 
 constexpr auto fields_of(const BankStatistics* /*type*/) {
   using Bank = BankStatistics;
   return std::tuple(
-      Field{"name", &Bank::name}, Field{"reads", &Bank::reads}, Field{"writes", &Bank::writes},
-      Field{"busy_cycles", &Bank::busy_cycles}, Field{"turnaround_cycles", &Bank::turnaround_cycles},
+      Field{"name", &Bank::name}, Field{"reads", &Bank::reads, "granted reads"},
+      Field{"writes", &Bank::writes, "granted writes"},
+      Field{"busy_cycles", &Bank::busy_cycles, "with one or more accesses"},
+      Field{"turnaround_cycles", &Bank::turnaround_cycles, "without access because of turnaround"},
       Field{"row_cycles", &Bank::row_cycles, "only of sdram"},
       Field{"refresh_cycles", &Bank::refresh_cycles, "only of sdram"},
-      Field{"idle_cycles", &Bank::idle_cycles}, Field{"contended_cycles", &Bank::contended_cycles},
-      Field{"utilization", &Bank::utilization, "", stats::share},
-      Field{"megabytes_per_second", &Bank::megabytes_per_second},
+      Field{"idle_cycles", &Bank::idle_cycles, "all other cycles"},
+      Field{"contended_cycles", &Bank::contended_cycles,
+            "with two or more requests for one port of the bank"},
+      Field{"utilization", &Bank::utilization, "busy_cycles / cycles", stats::share},
+      Field{"megabytes_per_second", &Bank::megabytes_per_second, "read and written, 10^6 bytes"},
       Field{"energy", &Bank::energy, "only of a bank that holds a buffer"});
 }
 
 constexpr auto fields_of(const PortStatistics* /*type*/) {
   using Port = PortStatistics;
-  return std::tuple(Field{"name", &Port::name}, Field{"grants", &Port::grants},
-                    Field{"stall_cycles", &Port::stall_cycles}, Field{"passed_cycles", &Port::passed_cycles},
-                    Field{"idle_cycles", &Port::idle_cycles}, Field{"blocked_cycles", &Port::blocked_cycles},
-                    Field{"starved_cycles", &Port::starved_cycles});
+  return std::tuple(Field{"name", &Port::name},
+                    Field{"grants", &Port::grants, "cycles with an access granted"},
+                    Field{"stall_cycles", &Port::stall_cycles, "with a request that is not granted"},
+                    Field{"passed_cycles", &Port::passed_cycles, "with a slot handled without an access"},
+                    Field{"idle_cycles", &Port::idle_cycles, "with nothing to do"},
+                    Field{"blocked_cycles", &Port::blocked_cycles, "in which its lane can take no slot"},
+                    Field{"starved_cycles", &Port::starved_cycles, "all other cycles"});
 }
 
 constexpr auto fields_of(const BlameRow* /*type*/) {
@@ -79,66 +96,83 @@ constexpr auto fields_of(const BlameRow* /*type*/) {
 
 constexpr auto fields_of(const PciMasterStatistics* /*type*/) {
   using Master = PciMasterStatistics;
-  return std::tuple(Field{"name", &Master::name}, Field{"transactions", &Master::transactions},
-                    Field{"words", &Master::words}, Field{"wait_clocks", &Master::wait_clocks});
+  return std::tuple(
+      Field{"name", &Master::name}, Field{"transactions", &Master::transactions, "bursts"},
+      Field{"words", &Master::words, "moved words"},
+      Field{"wait_clocks", &Master::wait_clocks, "from each request to its address clock, summed"});
 }
 
 constexpr auto fields_of(const CameraStatistics* /*type*/) {
   using Camera = CameraStatistics;
   return std::tuple(
-      Field{"name", &Camera::name}, Field{"frames", &Camera::frames},
-      Field{"captured_frames", &Camera::captured_frames}, Field{"dropped_frames", &Camera::dropped_frames},
-      Field{"dropped_pixels", &Camera::dropped_pixels},
-      Field{"dropped_not_armed", &Camera::dropped_not_armed}, Field{"dropped_busy", &Camera::dropped_busy},
-      Field{"dropped_by_partner", &Camera::dropped_by_partner});
+      Field{"name", &Camera::name}, Field{"frames", &Camera::frames, "that have begun"},
+      Field{"captured_frames", &Camera::captured_frames, "taken by a capture"},
+      Field{"dropped_frames", &Camera::dropped_frames, "not taken by a capture"},
+      Field{"dropped_pixels", &Camera::dropped_pixels, "lost because the FIFO of the capture board was full"},
+      Field{"dropped_not_armed", &Camera::dropped_not_armed, "frames: the capture board was not armed"},
+      Field{"dropped_busy", &Camera::dropped_busy, "frames: the capture before still ran"},
+      Field{"dropped_by_partner", &Camera::dropped_by_partner, "frames: the other side could not start"});
 }
 
 constexpr auto fields_of(const Percentiles* /*type*/) {
-  return std::tuple(Field{"min", &Percentiles::min}, Field{"p50", &Percentiles::p50},
-                    Field{"p95", &Percentiles::p95}, Field{"p99", &Percentiles::p99},
-                    Field{"max", &Percentiles::max});
+  return std::tuple(Field{"min", &Percentiles::min, "the least"},
+                    Field{"p50", &Percentiles::p50, "half are not greater"},
+                    Field{"p95", &Percentiles::p95, "95 % are not greater"},
+                    Field{"p99", &Percentiles::p99, "99 % are not greater"},
+                    Field{"max", &Percentiles::max, "the greatest"});
 }
 
 constexpr auto fields_of(const SteadyRate* /*type*/) {
-  return std::tuple(Field{"steady", &SteadyRate::frames_per_second, "", stats::above_zero},
-                    Field{"steady_uncertainty", &SteadyRate::uncertainty});
+  return std::tuple(
+      Field{"steady", &SteadyRate::frames_per_second, "of the whole computer without its start-up",
+            stats::above_zero},
+      Field{"steady_uncertainty", &SteadyRate::uncertainty, "what the window of steady leaves open"});
 }
 
 constexpr auto fields_of(const FramesPerSecond* /*type*/) {
-  return std::tuple(Field{"core", &FramesPerSecond::core, "", stats::above_zero},
-                    Field{"system", &FramesPerSecond::system, "", stats::above_zero},
-                    stats::Merged{&FramesPerSecond::steady});
+  return std::tuple(
+      Field{"core", &FramesPerSecond::core, "frames / the time in which the core runs", stats::above_zero},
+      Field{"system", &FramesPerSecond::system, "deliveries / time of the last delivery", stats::above_zero},
+      stats::Merged{&FramesPerSecond::steady});
 }
 
 constexpr auto fields_of(const Bound* /*type*/) {
-  return std::tuple(
-      Field{"core", &Bound::core, "", stats::above_zero}, Field{"core_limited_by", &Bound::core_limited_by},
-      Field{"system", &Bound::system, "", stats::above_zero},
-      Field{"system_limited_by", &Bound::system_limited_by, "", nullptr, stats::Presence::kUnlessEmpty});
+  return std::tuple(Field{"core", &Bound::core, "upper bound of frames_per_second.core", stats::above_zero},
+                    Field{"core_limited_by", &Bound::core_limited_by, "the resource that sets bound.core"},
+                    Field{"system", &Bound::system,
+                          "upper bound of frames_per_second.steady, of whole pictures", stats::above_zero},
+                    Field{"system_limited_by", &Bound::system_limited_by,
+                          "the resource that sets bound.system", nullptr, stats::Presence::kUnlessEmpty});
 }
 
 constexpr auto fields_of(const ComputerStatistics* /*type*/) {
   using Computer = ComputerStatistics;
-  return std::tuple(Part{"pci", std::tuple(Field{"clocks", &Computer::pci_clocks},
-                                           Field{"busy_clocks", &Computer::pci_busy_clocks},
-                                           Field{"masters", &Computer::pci_masters})},
-                    Part{"bridge", std::tuple(Field{"posted_words", &Computer::posted_words},
-                                              Field{"dma_words", &Computer::dma_words},
-                                              Field{"local_clocks", &Computer::local_clocks},
-                                              Field{"local_busy_clocks", &Computer::local_busy_clocks})},
-                    Field{"cameras", &Computer::cameras},
-                    Part{"latency_ms", std::tuple(Field{"capture_to_host", &Computer::capture_to_host_ms})});
+  return std::tuple(
+      Part{"pci",
+           std::tuple(Field{"clocks", &Computer::pci_clocks, "whole clocks from power-up"},
+                      Field{"busy_clocks", &Computer::pci_busy_clocks, "address, wait and data clocks"},
+                      Field{"masters", &Computer::pci_masters})},
+      Part{"bridge",
+           std::tuple(
+               Field{"posted_words", &Computer::posted_words, "that masters wrote into the bridge"},
+               Field{"dma_words", &Computer::dma_words, "that the DMA of the bridge moved"},
+               Field{"local_clocks", &Computer::local_clocks, "whole local clocks from power-up"},
+               Field{"local_busy_clocks", &Computer::local_busy_clocks, "local clocks that are not idle"})},
+      Field{"cameras", &Computer::cameras},
+      Part{"latency_ms", std::tuple(Field{"capture_to_host", &Computer::capture_to_host_ms})});
 }
 
 constexpr auto fields_of(const Statistics* /*type*/) {
   return std::tuple(
-      Field{"board", &Statistics::board},
-      Field{"fidelity", &Statistics::fidelity, "",
+      Field{"board", &Statistics::board, "name of the board"},
+      Field{"fidelity", &Statistics::fidelity, "fast or cycle",
             [] {
               return stats::one_of_words({"fast", "cycle"});
             }},
-      Field{"frames", &Statistics::frames, "", stats::from_one}, Field{"cycles", &Statistics::cycles},
-      Field{"frame_cycles", &Statistics::frame_cycles, "", [] { return stats::list_of(stats::count(), 1); }},
+      Field{"frames", &Statistics::frames, "that were simulated", stats::from_one},
+      Field{"cycles", &Statistics::cycles, "counted cycles of all frames"},
+      Field{"frame_cycles", &Statistics::frame_cycles, "of each frame, a list",
+            [] { return stats::list_of(stats::count(), 1); }},
       Field{"frames_per_second", &Statistics::frames_per_second},
       Field{"bound", &Statistics::bound,
             "frames per second; system: of the frames of steady, without it of those delivered"},
@@ -154,9 +188,13 @@ constexpr auto fields_of(const Statistics* /*type*/) {
 namespace stereotlm::stats {
 
 constexpr auto fields_of(const Accuracy* /*type*/) {
-  return std::tuple(Field{"bad_1_percent", &Accuracy::bad_1_percent, "", percentage},
-                    Field{"bad_2_percent", &Accuracy::bad_2_percent, "", percentage},
-                    Field{"answered_percent", &Accuracy::answered_percent, "", percentage});
+  return std::tuple(
+      Field{"bad_1_percent", &Accuracy::bad_1_percent,
+            "share of the answered pixels that are wrong by more than 1 disparity", percentage},
+      Field{"bad_2_percent", &Accuracy::bad_2_percent,
+            "share of the answered pixels that are wrong by more than 2 disparities", percentage},
+      Field{"answered_percent", &Accuracy::answered_percent,
+            "share of the known, visible pixels that have a disparity", percentage});
 }
 
 }  // namespace stereotlm::stats

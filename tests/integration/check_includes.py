@@ -34,9 +34,11 @@ ROOMS = {
     "sw/process": [],
     "sw/sqlite": [],
     "sw/stats": ["sw/files", "sw/media"],
-    "sw/explore/store": ["sw/files", "sw/sqlite"],
-    "sw/explore/plan": ["sw/explore/store", "sw/files", "sw/sqlite"],
-    "sw/explore/sweep": ["sw/explore/plan", "sw/explore/store", "sw/files", "sw/process", "sw/sqlite"],
+    "sw/explore/store": ["sw/files", "sw/sqlite", "sw/stats"],
+    "sw/explore/plan": ["sw/explore/store", "sw/files", "sw/sqlite", "sw/stats"],
+    "sw/explore/sweep": [
+        "sw/explore/plan", "sw/explore/store", "sw/files", "sw/process", "sw/sqlite", "sw/stats"
+    ],
     "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/sqlite"],
     "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
     "sw/trace": ["sw/files", "sw/process", "sw/sqlite"],

@@ -113,10 +113,36 @@ Point Plan::point(std::uint64_t number) const {
   std::string rules;
   for (const Diagnostic& problem : reading.problems) rules += (rules.empty() ? "" : "; ") + problem.text;
   if (!rules.empty()) return impossible_point(number, draft.to_yaml(), reading.board, run, rules);
-  const auto problem = tables_problem(reading.board);
-  if (!problem) return make_point(number, reading.board, run);
-  return impossible_point(number, to_yaml(reading.board), reading.board, run,
-                          fmt::format("{}: {}", kCalibrationPath, *problem));
+  const auto impossible = [&](const char* path, const std::string& problem) {
+    return impossible_point(number, to_yaml(reading.board), reading.board, run,
+                            fmt::format("{}: {}", path, problem));
+  };
+  if (const auto problem = tables_problem(reading.board))
+    return impossible(kCalibrationPath, *problem);
+  if (const auto problem = pairs_problem(reading.board)) return impossible(kPairsPath, *problem);
+  return make_point(number, reading.board, run);
+}
+
+bool Plan::is_fixed(const char* path) const {
+  return std::none_of(axes_.begin(), axes_.end(), [path](const Axis& axis) {
+    return std::any_of(axis.paths.begin(), axis.paths.end(), [path](const std::string& one) {
+      return one == path || platform::is_below(one, path);
+    });
+  });
+}
+
+std::optional<std::string> Plan::use_pairs(const std::string& sha256, int width, int height) {
+  run_.pairs = sha256;
+  pairs_width_ = width;
+  pairs_height_ = height;
+  return is_fixed("image") ? pairs_problem(*base_board_) : std::nullopt;
+}
+
+std::optional<std::string> Plan::pairs_problem(const platform::BoardConfig& board) const {
+  if (run_.pairs.empty() || (board.image.width == pairs_width_ && board.image.height == pairs_height_))
+    return std::nullopt;
+  return fmt::format("the pictures have {}x{} pixels: must be as large as the board's images, {}x{}",
+                     pairs_width_, pairs_height_, board.image.width, board.image.height);
 }
 
 std::optional<std::string> Plan::use_calibration(const std::string& sha256, int width, int height,
@@ -125,14 +151,7 @@ std::optional<std::string> Plan::use_calibration(const std::string& sha256, int 
   tables_width_ = width;
   tables_height_ = height;
   tables_joint_problem_ = joint_problem;
-  // Checked are the keys of which neither they nor those below them vary.
-  return table_problem(*base_board_, [this](const char* path) {
-    return std::none_of(axes_.begin(), axes_.end(), [path](const Axis& axis) {
-      return std::any_of(axis.paths.begin(), axis.paths.end(), [path](const std::string& one) {
-        return one == path || platform::is_below(one, path);
-      });
-    });
-  });
+  return table_problem(*base_board_, [this](const char* path) { return is_fixed(path); });
 }
 
 std::optional<std::string> Plan::table_problem(const platform::BoardConfig& board,
@@ -264,9 +283,11 @@ class PlanReader {
   }
 
   void read_run(const YamlNode& node) {
-    if (!is_map("run", node, {"source", "frames", "calibration"}, "a map")) return;
+    if (!is_map("run", node, {"source", "frames", "calibration", "pairs", "synthetic"}, "a map")) return;
     for (const YamlNode::Entry& entry : node.entries) {
       const std::string path = "run." + entry.key.text;
+      if (path == kPairsPath) read_pairs(entry.value);
+      if (path == kSyntheticPath) read_seeds(entry.value);
       if (const std::string rule = run_key_problem(path, entry.value); !rule.empty()) {
         report(path, entry.value, rule);
         continue;
@@ -276,6 +297,47 @@ class PlanReader {
       plan_.calibration_ = entry.value.text;
       plan_.calibration_place_ = place_text(entry.value.place);
     }
+    if (!plan_.pairs_.empty() && !plan_.seeds_.empty())
+      report(node.place, fmt::format("{}: does not go with {}", kSyntheticPath, kPairsPath));
+  }
+
+  void read_pairs(const YamlNode& node) {
+    if (!node.is_list() || node.items.empty())
+      return report(kPairsPath, node, "a list of maps {left: FILE, right: FILE, truth: FILE, scale: NUMBER}");
+    for (const YamlNode& item : node.items) {
+      const std::string path = fmt::format("{}[{}]", kPairsPath, plan_.pairs_.size());
+      if (!is_map(path, item, {"left", "right", "truth", "scale"}, "a map")) return;
+      PlanPair& pair = plan_.pairs_.emplace_back();
+      pair.place = place_text(item.place);
+      for (const auto& [name, file] : {std::pair("left", &pair.left), std::pair("right", &pair.right),
+                                       std::pair("truth", &pair.truth)}) {
+        const YamlNode::Entry* const entry = item.find(name);
+        if (entry == nullptr) {
+          report(item.place, fmt::format("{}.{}: missing: the path of a picture", path, name));
+        } else if (!entry->value.is_scalar() || entry->value.text.empty()) {
+          report(fmt::format("{}.{}", path, name), entry->value, "the path of a picture");
+        } else {
+          *file = entry->value.text;
+        }
+      }
+      const YamlNode::Entry* const scale = item.find("scale");
+      if (scale == nullptr) continue;
+      pair.scale = platform::decimal_of(scale->value);
+      if (!(pair.scale.value_or(0) > 0))
+        report(path + ".scale", scale->value, "a decimal number above 0: levels of the truth per disparity");
+    }
+  }
+
+  void read_seeds(const YamlNode& node) {
+    constexpr platform::IntegerRule kSeeds = {0, std::numeric_limits<std::int64_t>::max() - 1};
+    if (!node.is_list() || node.items.empty())
+      return report(kSyntheticPath, node, "a list of seeds, each " + kSeeds.text());
+    for (const YamlNode& item : node.items) {
+      const std::int64_t seed = platform::integer_of(item).value_or(-1);
+      if (!kSeeds.allows(seed)) report(kSyntheticPath, item, kSeeds.text());
+      plan_.seeds_.push_back(static_cast<std::uint64_t>(seed));
+    }
+    plan_.run_.synthetic = fmt::format("[{}]", fmt::join(plan_.seeds_, ", "));
   }
 
   // Records a path that occurs in a section of the plan. Reports a path that is not allowed in the section,
@@ -286,8 +348,9 @@ class PlanReader {
     const bool is_run = section != "set" && may_vary(path);
     const bool is_checked_later = section == "set";  // by the draft of the board
     const std::string rule = is_run || is_checked_later ? ""
-                             : path == kCalibrationPath ? "can only be given in `run`: one for all points"
-                                                        : platform::path_problem(path);
+                             : !run_key_meaning(path).empty()
+                                 ? "can only be given in `run`: one for all points"
+                                 : platform::path_problem(path);
     const auto [first, is_new] = places_.emplace(path, key.place);
     if (!rule.empty()) {
       report(key.place, fmt::format("{}: {}: {}", section, path, rule));

@@ -28,6 +28,15 @@ struct PlanValues {
   platform::YamlNode at(std::uint64_t number) const;
 };
 
+// A pair of pictures in the section `run`.
+struct PlanPair {
+  std::string left;
+  std::string right;
+  std::string truth;
+  std::optional<double> scale;  // levels of the truth per disparity
+  std::string place;            // "plan.yaml:3:9"
+};
+
 // What a search is to find among the points of a plan. The figures and conditions are texts, not checked yet.
 struct SearchWishes {
   struct Goal {
@@ -98,6 +107,14 @@ class Plan {
   std::optional<std::string> use_calibration(const std::string& sha256, int width, int height,
                                              const std::optional<std::string>& joint_problem);
 
+  // The pictures from which the section `run` has the accuracy of each point computed: pairs, or seeds of
+  // made scenes.
+  const std::vector<PlanPair>& pairs() const { return pairs_; }
+  const std::vector<std::uint64_t>& seeds() const { return seeds_; }
+  // Says what the files of pairs() hold: `sha256` over all of them, and the size of the pictures. A point
+  // with images of another size becomes impossible. Returns the broken rule if all become impossible.
+  std::optional<std::string> use_pairs(const std::string& sha256, int width, int height);
+
  private:
   friend class PlanReader;
 
@@ -125,6 +142,10 @@ class Plan {
   // `is_checked` is false. Nullopt without a reason or without a calibration.
   std::optional<std::string> table_problem(const platform::BoardConfig& board,
                                            const std::function<bool(const char*)>& is_checked) const;
+  // The same of the pairs of pictures.
+  std::optional<std::string> pairs_problem(const platform::BoardConfig& board) const;
+  // Whether neither the key nor one below it varies.
+  bool is_fixed(const char* path) const;
 
   std::string path_;
   std::string text_;
@@ -134,6 +155,10 @@ class Plan {
   int tables_width_ = 0;                             // pixels
   int tables_height_ = 0;                            // pixels
   std::optional<std::string> tables_joint_problem_;  // why they cannot be joined
+  std::vector<PlanPair> pairs_;
+  int pairs_width_ = 0;   // pixels
+  int pairs_height_ = 0;  // pixels
+  std::vector<std::uint64_t> seeds_;
   std::optional<platform::BoardDraft> base_;
   std::optional<platform::BoardConfig> base_board_;
   std::vector<std::string> banks_;

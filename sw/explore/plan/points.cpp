@@ -8,8 +8,8 @@
 #include <map>
 #include <string_view>
 
-#include "sw/explore/store/store.h"
 #include "sw/files/text_forms.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -51,6 +51,20 @@ std::string tables_text(const std::map<std::string, int>& parameters, bool has_p
   for (const auto& [table, list] : columns)
     text += fmt::format("{}(SELECT {}) AS {}", text.empty() ? "" : ", ", list, table);
   return text;
+}
+
+// A reason of SQLite; behind an unknown name the one that was probably meant.
+std::string with_nearest(const std::string& reason) {
+  const std::string unknown = "no such column: ";
+  if (reason.rfind(unknown, 0) != 0) return reason;
+  const std::string name = reason.substr(unknown.size());
+  if (parameters().count(name) > 0) return reason + "; write the key without quotes";
+  if (stats::find_figure(name) != nullptr)
+    return reason + "; a figure is not known before the point is simulated";
+  std::vector<std::string> known;
+  for (const auto& [key, number] : parameters()) known.push_back(key);
+  const std::string nearest = platform::nearest_path(name, known);
+  return nearest.empty() ? reason : reason + "; nearest: " + nearest;
 }
 
 // The names of the functions whose result depends only on their arguments. Left out are the date functions,
@@ -116,8 +130,8 @@ std::string Conditions::reason_of(const sqlite::DatabaseError& error) const {
   const int code = sqlite3_errcode(database_.handle());
   if (code == SQLITE_TOOBIG) return fmt::format("a text must be at most {} bytes", kMostBytes);
   if (code == SQLITE_INTERRUPT) return fmt::format("must be computed within {} steps of SQLite", kMostSteps);
-  return platform::short_text(
-      std::string(error.what()).substr(database_.path().size() + 2));  // without "where: "
+  return with_nearest(platform::short_text(
+      std::string(error.what()).substr(database_.path().size() + 2)));  // without "where: "
 }
 
 void Conditions::bind(const std::vector<BoardValue>& values) {
@@ -191,7 +205,8 @@ void apply_run_key(const std::string& run_key, const platform::YamlNode& value, 
 }
 
 Point make_point(std::uint64_t number, const platform::BoardConfig& board, const PointRun& run) {
-  const PointRun its_run = {run.camera, frames_of(run, board), run.calibration};
+  PointRun its_run = run;
+  its_run.frames = frames_of(run, board);
   Point point = impossible_point(number, to_yaml(board), board, its_run, "");
   point.board = board;
   return point;
@@ -209,9 +224,12 @@ Point impossible_point(std::uint64_t number, const std::string& yaml, const plat
   point.values.push_back({kSourcePath, source});
   point.values.push_back({kFramesPath, static_cast<std::int64_t>(run.frames)});
   std::string text = fmt::format("{}run: {{source: {}, frames: {}}}\n", yaml, source, run.frames);
-  if (!run.calibration.empty()) {
-    point.values.push_back({kCalibrationPath, run.calibration});
-    text += fmt::format("calibration: {}\n", run.calibration);
+  for (const auto& [path, value] :
+       {std::pair(kCalibrationPath, &run.calibration), std::pair(kPairsPath, &run.pairs),
+        std::pair(kSyntheticPath, &run.synthetic)}) {
+    if (value->empty()) continue;
+    point.values.push_back({path, *value});
+    text += fmt::format("{}: {}\n", std::string(path).substr(4), *value);  // without "run."
   }
   point.hash = files::sha256_hex(text.data(), text.size());
   return point;

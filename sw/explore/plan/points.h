@@ -14,20 +14,19 @@
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
 #include "platform/yaml/yaml_tree.h"
+#include "sw/explore/store/store.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
-
-// Keys of a point that are not keys of its board.
-inline constexpr const char* kSourcePath = "run.source";
-inline constexpr const char* kFramesPath = "run.frames";
-inline constexpr const char* kCalibrationPath = "run.calibration";
 
 // The parts of a point that are not its board.
 struct PointRun {
   bool camera = false;       // simulates the whole computer, else the board alone (preloaded)
   std::uint64_t frames = 0;  // 0: the default of the source, see frames_of()
   std::string calibration;   // SHA-256 of the tables; empty: the tables are the identity
+  // The pictures from which the accuracy of a point is computed; at most one of them is not empty.
+  std::string pairs = {};      // SHA-256 of the files and scales of the pairs
+  std::string synthetic = {};  // seeds of made scenes, "[1, 2]"
 };
 
 // The least window of the steady rate (platform::SteadyRate) in a run of the default length. It is whole

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include "platform/config/board_keys.h"
 #include "sw/files/output_file.h"
 #include "sw/files/whole_file.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -28,10 +30,15 @@ using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
 
 constexpr int kApplicationId = 0x53544C4D;  // "STLM"
-constexpr int kLayout = 2;
+constexpr int kLayout = 3;
 
-// The first columns of `points`, which every store has.
-constexpr std::array kFirstColumns = {"hash", "status", "reason", "version", "config"};
+// The first columns of `points`, which every store has, and what they mean.
+constexpr std::array<std::pair<const char*, const char*>, 5> kFirstColumns = {
+    {{"hash", "SHA-256 of board and run"},
+     {"status", "ok, impossible (there is no such board) or failed (the run ended with an error)"},
+     {"reason", "for the status, unless it is ok"},
+     {"version", "of the program"},
+     {"config", "the board in full, as it was asked for"}}};
 constexpr const char* kBlameColumns = "hash, port, bank, by, cycles";
 constexpr const char* kSizeOfSchema = "SELECT count(*) FROM sqlite_schema";
 
@@ -43,6 +50,20 @@ std::string listed(const Names& columns, const std::string& table = "") {
   return names;
 }
 
+bool is_first(const std::string& column) {
+  return std::any_of(kFirstColumns.begin(), kFirstColumns.end(),
+                     [&column](const auto& first) { return first.first == column; });
+}
+
+// The columns in the order of a finished store. Numbers inside names compare as numbers: bank2 comes before
+// bank10.
+Names in_order(Names columns) {
+  std::sort(columns.begin(), columns.end(),
+            [](const std::string& a, const std::string& b) { return strverscmp(a.c_str(), b.c_str()) < 0; });
+  std::stable_partition(columns.begin(), columns.end(), is_first);
+  return columns;
+}
+
 // Creates table `points` in an empty database: with kFirstColumns, then the others of these columns.
 // `schema`: the name under which the database is attached.
 void create_points(sqlite::Database& database, const Names& columns, const std::string& schema = "main") {
@@ -50,8 +71,7 @@ void create_points(sqlite::Database& database, const Names& columns, const std::
       "hash TEXT PRIMARY KEY NOT NULL, status TEXT NOT NULL, reason TEXT NOT NULL, "
       "version TEXT NOT NULL, config TEXT NOT NULL";
   for (const std::string& column : columns) {
-    if (std::count(kFirstColumns.begin(), kFirstColumns.end(), column) == 0)
-      text += ", " + sqlite::quoted_name(column);
+    if (!is_first(column)) text += ", " + sqlite::quoted_name(column);
   }
   database.execute(fmt::format("CREATE TABLE {}.points({})", schema, text));
 }
@@ -62,8 +82,32 @@ void create_tables(sqlite::Database& database, const Names& columns, const std::
       "PRAGMA {0}.application_id = {1}; PRAGMA {0}.user_version = {2};"
       "CREATE TABLE {0}.blame(hash TEXT NOT NULL, port TEXT NOT NULL, bank TEXT NOT NULL, by TEXT NOT NULL, "
       "cycles INTEGER NOT NULL, PRIMARY KEY(hash, port, bank, by)) WITHOUT ROWID;"
-      "CREATE TABLE {0}.keys(name TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
+      "CREATE TABLE {0}.columns(name TEXT PRIMARY KEY NOT NULL, unit TEXT NOT NULL, meaning TEXT NOT NULL, "
+      "is_key INTEGER NOT NULL, varied INTEGER) WITHOUT ROWID",
       schema, kApplicationId, kLayout));
+}
+
+struct IsLessWithoutCase {
+  bool operator()(const std::string& a, const std::string& b) const {
+    return sqlite3_stricmp(a.c_str(), b.c_str()) < 0;
+  }
+};
+
+// Makes the view `plain`: `points` with names that need no quotes. Each character that is no letter, digit or
+// underscore is an underscore. A name that is there already ends in _2, _3, ..
+void create_view(sqlite::Database& database, const Names& columns) {
+  std::set<std::string, IsLessWithoutCase> names;
+  std::string list;
+  for (const std::string& column : in_order(columns)) {
+    std::string plain = column;
+    for (char& c : plain) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+    std::string name = plain;
+    for (int number = 2; !names.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+    list += fmt::format("{}{} AS {}", list.empty() ? "" : ", ", sqlite::quoted_name(column),
+                        sqlite::quoted_name(name));
+  }
+  database.execute(
+      fmt::format("DROP VIEW IF EXISTS main.plain; CREATE VIEW main.plain AS SELECT {} FROM points", list));
 }
 
 // Throws if the store holds points of another version of the program.
@@ -76,11 +120,51 @@ void check_version(sqlite::Database& database, const std::string& version) {
                   other.text(0), version));
 }
 
-// Notes that this column of `points` is a key of the board, not a figure.
-void insert_board_key(const sqlite::Database& database, const std::string& name) {
-  sqlite::Statement insert(database, "INSERT INTO keys(name) VALUES(?)");
-  insert.bind(1, name);
+// Notes what a column of `points` is. `varied`: whether points differ in it; nullopt: not known yet.
+void insert_column(const sqlite::Database& database, const std::string& name, bool is_key,
+                   std::optional<bool> varied = std::nullopt) {
+  std::string unit;
+  std::string meaning = is_key ? run_key_meaning(name) : "";
+  for (const auto& [first, its_meaning] : kFirstColumns) {
+    if (name == first) meaning = its_meaning;
+  }
+  const platform::Key* const key = is_key ? platform::find_key(platform::schema_path(name)) : nullptr;
+  const stats::Figure* const figure = is_key ? nullptr : stats::find_figure(name);
+  if (key != nullptr) std::tie(unit, meaning) = std::tie(key->unit, key->meaning);
+  if (figure != nullptr) std::tie(unit, meaning) = std::tie(figure->unit, figure->meaning);
+  sqlite::Statement insert(database, "INSERT INTO columns VALUES(?, ?, ?, ?, ?)");
+  int place = 0;
+  for (const std::string& text : {name, unit, meaning}) insert.bind(++place, text);
+  insert.bind(++place, std::int64_t{is_key ? 1 : 0});
+  if (varied) insert.bind(++place, std::int64_t{*varied ? 1 : 0});
   insert.run();
+}
+
+// The columns in which points differ. Figures are compared among the points that have any.
+std::set<std::string> varied_columns(const sqlite::Database& database, const Names& columns,
+                                     const std::set<std::string>& keys) {
+  std::set<std::string> varied;
+  for (const bool of_figures : {false, true}) {
+    Names compared;
+    std::string list;
+    for (const std::string& column : columns) {
+      if (of_figures == (keys.count(column) > 0 || is_first(column))) continue;
+      compared.push_back(column);
+      list +=
+          fmt::format("{0}max(p.{1} IS NOT f.{1})", list.empty() ? "" : ", ", sqlite::quoted_name(column));
+    }
+    if (compared.empty()) continue;
+    const char* const which = of_figures ? "WHERE status = 'ok'" : "";
+    sqlite::Statement differ(database,
+                             fmt::format("SELECT {0} FROM (SELECT * FROM points {1} LIMIT 1) AS f CROSS JOIN "
+                                         "(SELECT * FROM points {1}) AS p",
+                                         list, which));
+    differ.step();
+    for (std::size_t i = 0; i < compared.size(); ++i) {
+      if (differ.is_true(static_cast<int>(i))) varied.insert(compared[i]);
+    }
+  }
+  return varied;
 }
 
 bool is_list_of_named(const Json& value) {
@@ -110,12 +194,6 @@ void wait_for_writers(sqlite::Database& database) { database.execute("BEGIN IMME
 constexpr off_t kPlace = off_t{1} << 61;
 constexpr std::chrono::milliseconds kBetweenTries{20};
 
-struct IsLessWithoutCase {
-  bool operator()(const std::string& a, const std::string& b) const {
-    return sqlite3_stricmp(a.c_str(), b.c_str()) < 0;
-  }
-};
-
 // The columns and keys of the stores that are merged.
 struct Inputs {
   std::map<std::string, std::string, IsLessWithoutCase> columns;  // [name]: the first store that has it
@@ -134,7 +212,7 @@ struct Inputs {
           fmt::format("{}: its column {} differs from {} of {} only in case: they do not mix", path, column,
                       name, first));
     }
-    for (const std::string& key : input.texts("SELECT name FROM keys")) keys.insert(key);
+    for (const std::string& key : input.texts("SELECT name FROM columns WHERE is_key")) keys.insert(key);
     for (const std::string& its : input.texts("SELECT DISTINCT version FROM points")) {
       if (version.empty()) std::tie(version, path_of_version) = std::pair(its, path);
       if (its == version) continue;
@@ -144,14 +222,10 @@ struct Inputs {
     }
   }
 
-  // Numbers inside names compare as numbers: bank2 comes before bank10.
-  Names sorted_columns() const {
+  Names ordered_columns() const {
     Names names;
     for (const auto& [name, path] : columns) names.push_back(name);
-    std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-      return strverscmp(a.c_str(), b.c_str()) < 0;
-    });
-    return names;
+    return in_order(names);
   }
 };
 
@@ -219,6 +293,15 @@ Names store_columns(sqlite::Database& database) {
   return database.texts("SELECT name FROM pragma_table_info('points') ORDER BY cid");
 }
 
+std::string run_key_meaning(const std::string& path) {
+  if (path == kSourcePath) return "preloaded, the core alone, or camera, the whole computer";
+  if (path == kFramesPath) return "frames to deliver";
+  if (path == kCalibrationPath) return "SHA-256 of the tables of the calibration; NULL: the identity";
+  if (path == kPairsPath) return "SHA-256 of the pictures, truths and scales of the accuracy";
+  if (path == kSyntheticPath) return "seeds of the made scenes of the accuracy";
+  return "";
+}
+
 Figures figures_of(const Json& document) {
   Figures figures;
   for (const auto& [key, value] : document.items()) {
@@ -280,7 +363,10 @@ void Store::create() {
     // ends it.
     database_.execute("PRAGMA journal_mode = WAL");
     database_.execute("BEGIN IMMEDIATE");
-    if (database_.number(kSizeOfSchema) == 0) create_tables(database_, {});
+    if (database_.number(kSizeOfSchema) == 0) {
+      create_tables(database_, {});
+      for (const auto& [name, meaning] : kFirstColumns) insert_column(database_, name, false);
+    }
     database_.execute("COMMIT");
   }
   read_columns();
@@ -316,7 +402,8 @@ bool Store::has(const std::string& hash) {
 bool Store::add(const StoredPoint& point) {
   std::vector<platform::BoardValue> values = point.keys;
   values.insert(values.end(), point.figures.values.begin(), point.figures.values.end());
-  Names columns(kFirstColumns.begin(), kFirstColumns.end());
+  Names columns;
+  for (const auto& [name, meaning] : kFirstColumns) columns.emplace_back(name);
   for (const platform::BoardValue& value : values) columns.push_back(value.path);
   database_.execute("BEGIN IMMEDIATE");
   try {
@@ -350,6 +437,7 @@ sqlite::Statement& Store::insertion(const StoredPoint& point, const Names& colum
   const auto known = insertions_.find(columns);
   if (known != insertions_.end()) return known->second;
   add_columns(point);
+  database_.execute("UPDATE columns SET varied = NULL WHERE varied IS NOT NULL");
   const std::string sql = fmt::format("INSERT OR IGNORE INTO points({}) VALUES({})", listed(columns),
                                       fmt::join(Names(columns.size(), "?"), ", "));
   return insertions_.try_emplace(columns, database_, sql).first->second;
@@ -362,7 +450,7 @@ void Store::add_columns(const StoredPoint& point) {
     for (const platform::BoardValue& value : *values) {
       if (!columns_.insert(value.path).second) continue;
       missing.push_back(value.path);
-      if (values == &point.keys) insert_board_key(database_, value.path);
+      insert_column(database_, value.path, values == &point.keys);
     }
   }
   if (missing.empty()) return;
@@ -371,10 +459,11 @@ void Store::add_columns(const StoredPoint& point) {
   if (database_.number("SELECT EXISTS(SELECT 1 FROM points)") == 0) {
     database_.execute("DROP TABLE points");
     create_points(database_, {columns_.begin(), columns_.end()});
-    return;
+  } else {
+    for (const std::string& column : missing)
+      database_.execute("ALTER TABLE points ADD COLUMN " + sqlite::quoted_name(column));
   }
-  for (const std::string& column : missing)
-    database_.execute("ALTER TABLE points ADD COLUMN " + sqlite::quoted_name(column));
+  create_view(database_, {columns_.begin(), columns_.end()});
 }
 
 StoredRow::StoredRow(const std::string& path, const std::string& version)
@@ -475,7 +564,7 @@ void merge_stores(const Names& inputs, const std::string& store,
   if (fs::file_size(out, none) > 0 && !none) empty_journal(out);
   Inputs all;
   for (const std::string& path : inputs) all.add(path);
-  const Names columns = all.sorted_columns();
+  const Names columns = all.ordered_columns();
   using namespace std::string_literals;
   const auto kind =
       files::marked_kind("database of stereotlm sweep", {{0, "SQLite format 3\0"s}, {68, "STLM"}});
@@ -498,13 +587,16 @@ void merge_stores(const Names& inputs, const std::string& store,
     }
     database.execute("BEGIN");
     create_tables(database, columns);
-    for (const std::string& key : all.keys) insert_board_key(database, key);
     // In an order in which the bytes depend only on the points.
     database.execute(
         fmt::format("INSERT INTO main.points({0}) SELECT {0} FROM {2}.points ORDER BY hash;"
-                    "INSERT INTO main.blame({1}) SELECT {1} FROM {2}.blame ORDER BY hash, port, bank, by;"
-                    "COMMIT",
+                    "INSERT INTO main.blame({1}) SELECT {1} FROM {2}.blame ORDER BY hash, port, bank, by",
                     listed(columns), kBlameColumns, is_single ? "input" : "gathered"));
+    const std::set<std::string> varied = varied_columns(database, columns, all.keys);
+    for (const std::string& column : columns)
+      insert_column(database, column, all.keys.count(column) > 0, varied.count(column) > 0);
+    create_view(database, columns);
+    database.execute("COMMIT");
   }
   file.complete();
   for (const char* ending : {"-wal", "-shm"}) fs::remove(out + ending, none);

@@ -18,6 +18,15 @@
 
 namespace stereotlm::explore {
 
+// Keys of a point that are not keys of its board.
+inline constexpr const char* kSourcePath = "run.source";
+inline constexpr const char* kFramesPath = "run.frames";
+inline constexpr const char* kCalibrationPath = "run.calibration";
+inline constexpr const char* kPairsPath = "run.pairs";
+inline constexpr const char* kSyntheticPath = "run.synthetic";
+// What a key of the run means; empty for any other path.
+std::string run_key_meaning(const std::string& path);
+
 // The contents of stats.json as one row of a database.
 struct Figures {
   // Each value has the dotted path of its key. The path of an element of a list has the element's member
@@ -26,7 +35,7 @@ struct Figures {
   std::vector<platform::BlameRow> blame;
 };
 
-// `document`: as stats::stats_document() returns it.
+// `document`: as stats::point_document() returns it.
 Figures figures_of(const nlohmann::ordered_json& document);
 
 // Everything that a database holds about one point.
@@ -56,9 +65,11 @@ std::optional<std::string> bank_names_problem(const platform::BoardConfig& board
 std::string bank_names_problem(const std::string& one, const std::string& other);
 
 // Writes results of points to an SQLite file. Table `points` has one row for each point, table `blame`
-// several, and table `keys` lists the columns of `points` that hold keys of a board or a run. A point is
-// stored completely or not at all, whatever ends the process. Several processes may add points at the same
-// time. Member functions throw DatabaseError. Must not be used across fork().
+// several. Table `columns` has the name, unit and meaning of each column of `points`, whether it is a key of
+// board or run, and whether points differ in it (`varied`; NULL until merge_stores() has written the file).
+// View `plain` is `points` under names that need no quotes, as matcher_window. A point is stored completely or
+// not at all, whatever ends the process. Several processes may add points at the same time. Member functions
+// throw DatabaseError. Must not be used across fork().
 class Store {
  public:
   // Opens the file, or makes it. Throws if it holds points of another version of the program.
@@ -106,10 +117,7 @@ class StoredRow {
   std::string text(const std::string& column) const;
   std::int64_t integer(const std::string& column) const;
   double real(const std::string& column) const;
-  // The pixels that the captures of a computer have lost.
-  std::int64_t lost_pixels() const {
-    return integer("cameras.left.dropped_pixels") + integer("cameras.right.dropped_pixels");
-  }
+  std::int64_t lost_pixels() const { return integer("lost_pixels"); }
 
  private:
   sqlite::Database database_;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "sw/process/child.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -32,16 +33,6 @@ std::uint64_t points_of(const Points& points, const SweepOptions& options) {
 
 StoredPoint row_of(const Point& point, const std::string& status, const std::string& reason) {
   return {point.hash, status, reason, point.yaml, point.values, {}};
-}
-
-// Renames a figure with the path of a key, because both have a column: bridge.posted_words is how many words
-// the bridge can hold, bridge.posted_words.counted how many it has taken.
-Figures beside_keys(Figures figures, const std::vector<platform::BoardValue>& keys) {
-  for (platform::BoardValue& figure : figures.values) {
-    const auto is_key = [&figure](const platform::BoardValue& key) { return key.path == figure.path; };
-    if (std::any_of(keys.begin(), keys.end(), is_key)) figure.path += ".counted";
-  }
-  return figures;
 }
 
 constexpr std::array<std::pair<const char*, std::uint64_t SweepCounts::*>, 7> kCounts = {{
@@ -186,7 +177,8 @@ class PointRunner {
   PointEnd simulate(const Point& point, StoredPoint& row) const {
     row.status = "failed";
     try {
-      row.figures = beside_keys(state_.evaluate(point), row.keys);
+      row.figures = state_.evaluate(point);
+      for (platform::BoardValue& figure : row.figures.values) figure.path = stats::figure_column(figure.path);
       row.status = "ok";
       return PointEnd::kOk;
     } catch (const GivenUp&) {

@@ -429,7 +429,8 @@ def _points(database, varied):
         connection.row_factory = sqlite3.Row
         order = ", ".join(f'"{path}"' for path in varied) or "1"
         rows = [dict(row) for row in connection.execute(f"SELECT * FROM points ORDER BY {order}")]
-        fixed = [name for name, in connection.execute("SELECT * FROM keys") if name not in varied]
+        keys = [name for name, in connection.execute("SELECT name FROM columns WHERE is_key")]
+        fixed = [name for name in keys if name not in varied]
     finally:
         connection.close()
     hidden = {"hash", "version", "config", *varied, *fixed}

@@ -109,7 +109,7 @@ Json database_data(const std::string& path) {
   }
   return {{"path", path},
           {"points", size},
-          {"keys", database.texts("SELECT name FROM keys ORDER BY name")},
+          {"keys", database.texts("SELECT name FROM columns WHERE is_key ORDER BY name")},
           {"columns", std::move(shown)},
           {"left_out", std::move(left_out)},
           {"boards", {{"lines", std::move(boards.lines)}, {"points", std::move(boards.texts)}}}};

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The figures of a database of stereotlm sweep: a function for each, in FIGURES, and what they share.
 
-usage: figures.py DB --out NEW_DIR [--only KEY=VALUE].. [--pareto X:SENSE,Y:SENSE] [--format F,..]
+usage: figures.py DB --out NEW_DIR [--only KEY=VALUE].. [--pareto X:SENSE,Y:SENSE[,Z:SENSE]] [--format F,..]
                   [--size WxH]
 `stereotlm plot` runs it. Equal data give equal bytes, whatever the settings of the user are.
 """
@@ -33,6 +33,7 @@ def refuse(*problems):
 os.environ.pop("MPLBACKEND", None)  # selects a display; matplotlib fails if it does not know the name
 try:
     import matplotlib
+    import numpy
     import pandas
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -85,10 +86,10 @@ def encoded(figure, kind, dpi=200):
 
 # The points of a database.
 
-APPLICATION_ID, LAYOUT = 0x53544C4D, 2
+APPLICATION_ID, LAYOUT = 0x53544C4D, 3
 PORTS = ["left_lut", "right_lut", "left_pixel", "right_pixel", "result", "host"]
 LANES = r"((?:left|right)_(?:lut|pixel))\.\d+"  # the name of a lane: "left_lut.3"
-LOST = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
+LOST = "lost_pixels"
 BANKS_USED, UNITS_USED = "banks_used", "units_used"  # columns that are added
 MOST_ROWS = 16  # bars, or names of points, in a figure
 
@@ -165,7 +166,7 @@ class Points:
         self._rows = read("points").sort_values("hash", ignore_index=True)
         self.total = len(self._rows)
         self.blame = read("blame")
-        known = set(read("keys").name)
+        known = {name for name, in database.execute("SELECT name FROM columns WHERE is_key")}
         self.keys = [name for name in self._rows if name in known]
 
     def _keep(self, condition, problem):
@@ -233,7 +234,7 @@ class Points:
         return pandas.to_numeric(values).astype(float)
 
     def losing_pixels(self):
-        return self.table[[name for name in LOST if name in self.table]].fillna(0).sum(axis=1) > 0
+        return pandas.to_numeric(self.table.get(LOST, pandas.Series(0, self.table.index))) > 0
 
     def too_large(self):
         """Whether a point needs more of some resource than the FPGA has."""
@@ -312,7 +313,7 @@ def finished(options, figure, handles, notes):
     with warnings.catch_warnings(record=True) as caught:  # also of characters that the font lacks
         warnings.simplefilter("always")
         figure.draw_without_rendering()
-    panels = [axes.get_window_extent() for axes in figure.axes]
+    panels = [axes.get_window_extent() for axes in figure.axes if axes.get_label() != "<colorbar>"]
     if (any("collapsed" in str(each.message) for each in caught)
             or min(min(panel.width, panel.height) for panel in panels) < 0.5 * figure.dpi):
         raise Unusable(f"--size {width:g}x{height:g}: too small for this figure")
@@ -409,7 +410,7 @@ def draw_rates(points, options, x, heading, with_area, key):
         notes.append("Above the bound by no more than the uncertainty: "
                      f"{counted(int(above.sum()), 'steady rate')}.")
     files = finished(options, figure, handles + crosses, notes + points.notes(table.index))
-    more = ["area.slices"] * with_area + [*LOST, "frames_per_second.system"] * (len(rates) > 1)
+    more = ["area.slices"] * with_area + [LOST, "frames_per_second.system"] * (len(rates) > 1)
     columns = ["hash", *points.varied, x, *drawn, *more]
     listed = points.table.loc[table.sort_values(x, kind="stable").index]
     lines = "an envelope" if looks is None else counted(len(families), "line")
@@ -570,52 +571,59 @@ SENSES = {"min": ", less is better", "max": ", more is better"}
 
 
 def parsed_pareto(text):
-    """[(column, sense), (column, sense)] of --pareto."""
+    """[(column, sense), ..] of --pareto, two or three."""
     found = [re.fullmatch(r"(.+):(min|max)", part) for part in text.split(",")]
-    if len(found) != 2 or not all(found) or found[0][1] == found[1][1]:
-        raise Unusable(f"--pareto = {text}: must be two columns, each with min or max: {PARETO}")
+    if len(found) not in (2, 3) or not all(found) or len({match[1] for match in found}) < len(found):
+        raise Unusable(f"--pareto = {text}: must be two or three columns, each with min or max: {PARETO}")
     return [match.groups() for match in found]
 
 
-def front_of(xs, ys, doubt):
-    """The places on the front, of values that are better the less they are.
+def front_of(columns, doubts):
+    """The places on the front. columns: lists of values that are better the less they are; doubts: of each.
 
-    From one to the next xs become worse, and ys better by more than the sum of both doubts. Places that are
-    equal in xs, and tie in ys, are all on the front.
+    A place is off the front if one on it is better in a column, and worse in none. Both by more than the sum
+    of their doubts. Exact columns decide the order in which places are looked at.
     """
-    front, last = [], None
-    for place in sorted(range(len(xs)), key=lambda place: (xs[place], ys[place])):
-        both = 0 if last is None else doubt[place] + doubt[last]
-        loss = -math.inf if last is None else ys[place] - ys[last]
-        if loss < -both:
-            last = place
-        if place == last or (loss <= both and xs[place] == xs[last]):
+    values, doubt = numpy.array(columns, float).T, numpy.array(doubts, float).T
+    order = sorted(range(len(columns)), key=lambda column: doubt[:, column].any())
+    front = []
+    for place in numpy.lexsort(values.T[order[::-1]]):
+        loss, both = values[place] - values[front], doubt[place] + doubt[front]
+        if not ((loss > both).any(axis=1) & (loss >= -both).all(axis=1)).any():
             front.append(place)
     return front
 
 
 def pareto(points, options):
-    """Two columns against each other, and the points that no other dominates, numbered and named below."""
-    (x, x_sense), (y, y_sense) = axes_of = parsed_pareto(options.pareto or PARETO)
+    """Columns against each other, and the points that no other dominates, numbered and named below.
+
+    A third column is the colour of the points of the front.
+    """
+    (x, x_sense), (y, y_sense), *third = axes_of = parsed_pareto(options.pareto or PARETO)
+    names = [column for column, _ in axes_of]
     if options.pareto is None:
         points.need_variation(x)
         points.need_variation(y)
-    table = points.table.assign(**{x: points.numbers(x), y: points.numbers(y)})
-    table = table[table[x].notna() & table[y].notna()]
+    table = points.table.assign(**{column: points.numbers(column) for column in names})
+    table = table[table[names].notna().all(axis=1)]
     if table.empty:
-        raise Unusable(f"no point has both {x} and {y}")
+        raise Unusable(f"no point has {'both' if len(names) == 2 else 'all of'} {' and '.join(names)}")
     better = [(table[column] * (1 if sense == "min" else -1)).tolist() for column, sense in axes_of]
     doubts = [points.numbers(f"{column}_uncertainty")[table.index].tolist()
-              if f"{column}_uncertainty" in table else None for column, _ in axes_of]
-    exact = 0 if doubts[0] is None else 1
-    places = front_of(better[exact], better[1 - exact], doubts[1 - exact] or [0] * len(table))
+              if f"{column}_uncertainty" in table else [0] * len(table) for column in names]
+    places = front_of(better, doubts)
     front = table.iloc[sorted(places, key=lambda place: (better[0][place], -better[1][place]))]
-    heading = "Pareto front: " + ", ".join(TITLES.get(column, column) for column in (x, y))
+    heading = "Pareto front: " + ", ".join(TITLES.get(column, column) for column in names)
     figure, (axes,) = sheet(options, heading, [3.6])
     axes.plot(table[x], table[y], "o", color="#7A858E", markersize=4, alpha=0.6, markeredgewidth=0,
               rasterized=len(table) > 1500)
-    corners = front[[x, y]].drop_duplicates()
-    axes.plot(corners[x], corners[y], color=VERMILION, drawstyle="steps-post", **POINT)
+    corners = front[names].drop_duplicates()
+    for column, sense in third:
+        colours = axes.scatter(corners[x], corners[y], 24, corners[column], cmap="viridis", zorder=3,
+                               edgecolors="white", linewidths=0.6)
+        figure.colorbar(colours, ax=axes, label=TITLES.get(column, column) + SENSES[sense])
+    if not third:
+        axes.plot(corners[x], corners[y], color=VERMILION, drawstyle="steps-post", **POINT)
     handles = [Line2D([], [], color=VERMILION, label="Pareto front", **POINT),
                Line2D([], [], color="#7A858E", marker="o", linestyle="", label="other points")]
     lid = {x: LID_OF_X, y: LID}
@@ -635,23 +643,23 @@ def pareto(points, options):
     short = short_names(points.varied)
     before = None
     for number, corner in enumerate(corners.head(MOST_ROWS).itertuples(index=False), 1):
-        at = axes.transData.transform(corner)
+        at = axes.transData.transform(corner[:2])
         if before is None or max(abs(at - before)) > 14:  # pixels: numbers would touch
             side = -5 if x_sense == "min" else 5, 5 if y_sense == "max" else -11
-            axes.annotate(str(number), corner, side, textcoords="offset points", fontsize=8,
+            axes.annotate(str(number), corner[:2], side, textcoords="offset points", fontsize=8,
                           ha="right" if x_sense == "min" else "left")
             before = at
-        here = front[(front[x] == corner[0]) & (front[y] == corner[1])]
+        here = front[(front[names] == list(corner)).all(axis=1)]
         same = [f"{short[key]}={text_of(here[key].iloc[0])}" for key in points.varied
                 if here[key].nunique(dropna=False) == 1]
         notes.append(f"{number}  {', '.join([*same, *[f'{len(here)} points'] * (len(here) > 1)])}")
     if len(corners) > MOST_ROWS:
         notes.append(f"{len(corners) - MOST_ROWS} more of the front are in the table.")
-    if any(doubts):
+    if any(map(any, doubts)):
         notes.append("What lies within the uncertainty ties.")
     files = finished(options, figure, handles, notes + points.notes(table.index))
-    columns = ["hash", *points.varied, x, y, f"{x}_uncertainty", f"{y}_uncertainty", BOUNDS.get(x),
-               BOUNDS.get(y), *LOST]
+    columns = ["hash", *points.varied, *names, *[f"{column}_uncertainty" for column in names],
+               *map(BOUNDS.get, names), LOST]
     rest = table.drop(front.index)
     listed = points.table.loc[[*front.index, *rest.index]].assign(front=[1] * len(front) + [0] * len(rest))
     return {**files, **csv_of(listed, [*(each for each in columns if each in listed), "front"])}, \
@@ -693,8 +701,8 @@ def parse():
     parser.add_argument("--out", metavar="DIR", required=True, help="folder of the figures, new or empty")
     parser.add_argument("--only", metavar="KEY=VALUE", action="append", default=[],
                         help="only points whose key has that value; may be given for several keys")
-    parser.add_argument("--pareto", metavar="X:SENSE,Y:SENSE",
-                        help=f"two columns, each with min or max: what is best; default {PARETO}")
+    parser.add_argument("--pareto", metavar="X:SENSE,Y:SENSE[,Z:SENSE]",
+                        help=f"two or three columns, each with min or max: what is best; default {PARETO}")
     parser.add_argument("--format", metavar="F,..", default="png,svg",
                         help=f"kinds of files, out of {', '.join(METADATA)}; default png,svg")
     parser.add_argument("--size", metavar="WxH",

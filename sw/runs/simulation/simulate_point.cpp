@@ -26,7 +26,7 @@
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/simulation/simulation.h"
 #include "sw/runs/sources/open_source.h"
-#include "sw/stats/stats_json.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -40,9 +40,15 @@ bool is_table_of(const std::optional<kernels::RectificationTable>& table, const 
   return table->width == board.image.width && table->height == board.image.height;
 }
 
-Json document_of(const platform::Statistics& statistics) {
+// Throws if an identity does not hold.
+void check(const platform::Statistics& statistics) {
   if (!statistics.failed.empty()) throw std::runtime_error(statistics.failed.front());
-  return stats::stats_document(statistics, std::nullopt);
+}
+
+Json document_of(const platform::Statistics& statistics, const BoardConfig& board,
+                 const std::optional<stats::Accuracy>& accuracy) {
+  check(statistics);
+  return stats::point_document(statistics, board, accuracy);
 }
 
 // Does the work in a child process, because SystemC is elaborated once in a process. Returns its document;
@@ -63,6 +69,7 @@ Json in_child(const std::function<Json()>& work) {
 // Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never
 // destroyed. Returns null if the simulation was given up.
 Json simulate_computer(const explore::Point& point, const platform::Tables& tables,
+                       const std::optional<stats::Accuracy>& accuracy,
                        const PointSimulator::Hopeless& hopeless, bool with_core_waits) {
   const platform::BoardConfig& board = *point.board;
   const std::uint64_t frames = point.run.frames;
@@ -90,7 +97,7 @@ Json simulate_computer(const explore::Point& point, const platform::Tables& tabl
     const std::optional<platform::SteadyRate> so_far = simulation->steady_rate();
     if (so_far && hopeless(*so_far)) return nullptr;
   }
-  Json document = document_of(simulation->statistics());
+  Json document = document_of(simulation->statistics(), board, accuracy);
   take();
   for (const auto& [why, time_ps] : core_waits_ps) document["core_waits"][why] = time_ps / whole_ps;
   return document;
@@ -106,11 +113,13 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, const H
   if (!is_usable && is_calibrated_)
     throw std::runtime_error("the tables of the calibration are of another board");
   if (!is_usable) tables_ = platform::identity_tables(board);
+  const auto accuracy = quality_.of(board, is_calibrated_ ? &tables_ : nullptr);
   if (!point.run.camera) {
-    return explore::figures_of(document_of(platform::run_core(board, tables_, point.run.frames)));
+    return explore::figures_of(
+        document_of(platform::run_core(board, tables_, point.run.frames), board, accuracy));
   }
   const Json document =
-      in_child([&] { return simulate_computer(point, tables_, hopeless, with_core_waits); });
+      in_child([&] { return simulate_computer(point, tables_, accuracy, hopeless, with_core_waits); });
   if (document.is_null()) throw explore::GivenUp();
   return explore::figures_of(document);
 }
@@ -127,7 +136,7 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
         pixels.append(result.disparity.pixels.begin(), result.disparity.pixels.end());
     }
     const platform::Statistics statistics = simulation->statistics();
-    document_of(statistics);  // its identities hold
+    check(statistics);
     const auto& cycles = statistics.frame_cycles;
     return {{"sha256", files::sha256_hex(pixels.data(), pixels.size())},
             {"cycles", std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0})},

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "models/host/frame_source.h"
 #include "models/kernels/gray_image.h"
@@ -11,6 +12,7 @@
 #include "platform/figures/statistics.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
+#include "sw/runs/simulation/point_quality.h"
 
 namespace stereotlm::runs {
 
@@ -20,6 +22,9 @@ class PointSimulator {
   PointSimulator() = default;
   // Uses the tables of a calibration on boards that they fit.
   explicit PointSimulator(const platform::Tables& tables) : tables_(tables), is_calibrated_(true) {}
+
+  // From now on each point also has the accuracy of its disparities.
+  void judge(PointQuality quality) { quality_ = std::move(quality); }
 
   // Called repeatedly while a whole computer is simulated, with its steady rate so far. Returns true to give
   // up the simulation.
@@ -36,6 +41,7 @@ class PointSimulator {
   // has the same.
   platform::Tables tables_;
   bool is_calibrated_ = false;
+  PointQuality quality_;
 };
 
 // The result of simulate_pixels().

@@ -166,7 +166,7 @@ class Frozen(ProgramTest):
                 store = self.folder / f"{name}.db"
                 self.succeeds(run("sweep", self.file("plan.yaml", plan), "--out", store))
                 database = sqlite3.connect(store)
-                text = "".join(table_of(database, table) for table in ("points", "keys", "blame"))
+                text = "".join(table_of(database, table) for table in ("points", "columns", "blame"))
                 database.close()
                 self.expect(f"database_{name}", text)
 

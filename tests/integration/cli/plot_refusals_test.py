@@ -33,7 +33,8 @@ class Refusals(PlotTest):
         return [line.removeprefix("stereotlm: error: ") for line in lines]
 
     def test_all_problems_are_named_at_once(self):
-        axes = "must be two columns, each with min or max: area.slices:min,frames_per_second.core:max"
+        axes = ("must be two or three columns, each with min or max: "
+                "area.slices:min,frames_per_second.core:max")
         only = ("matcher.widow=3", "matcher.fetch=row", "frames_per_second.core=3", "b")
         options = [word for each in only for word in ("--only", each)]
         self.assertEqual(
@@ -52,8 +53,9 @@ class Refusals(PlotTest):
                          [f"--only {' '.join(both)}: no point with figures has all these values"])
 
     def test_wrong_values_of_options(self):
-        for text in ("matcher.window", "a:least,b:max", "a:max,a:min"):
-            with self.assertRaisesRegex(figures.Unusable, "must be two columns"):
+        for text in ("matcher.window", "a:least,b:max", "a:max,a:min", "a:max,b:min,a:max",
+                     "a:max,b:max,c:max,d:max"):
+            with self.assertRaisesRegex(figures.Unusable, "must be two or three columns"):
                 figures.parsed_pareto(text)
         for text in ("", "PDF", "png,", "svg,png,svg"):
             with self.assertRaisesRegex(figures.Unusable, "must be png, svg, pdf"):

@@ -188,9 +188,8 @@ class Lines(FigureTest):
             self.assertEqual(int(row["banks_used"]), len(set(re.findall(r"bank\d", " ".join(allocation)))))
 
     def test_an_allocation_that_loses_pixels_is_not_the_best(self):
-        lost = ["cameras.left.dropped_pixels", "cameras.right.dropped_pixels"]
-        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", *RATES, *lost]
-        one, two, losing = (("made", "camera", lut, "[bank1]", rate, 13, 0, pixels)
+        header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", *RATES, "lost_pixels"]
+        one, two, losing = (("made", "camera", lut, "[bank1]", rate, 13, pixels)
                             for lut, rate, pixels in (("bank1", 8, 0), ("bank2", 10, 0), ("bank0", 12, 5)))
         self.draw("banks", make_database(self.folder / "losing.db", header, [one, two, losing]))
         (line,) = self.curves()
@@ -202,7 +201,7 @@ class Lines(FigureTest):
     def test_the_whole_computer_has_two_rates_and_points_that_lose_pixels_have_crosses(self):
         store = self.sweep(LOSING)
         rows, _ = self.database(store)
-        losing = {key for key, row in rows.items() if row["cameras.left.dropped_pixels"]}
+        losing = {key for key, row in rows.items() if row["lost_pixels"]}
         self.assertEqual(len(losing), 2)
         for name in ("window", "stalls", "pareto"):
             self.draw(name, store)
@@ -210,10 +209,10 @@ class Lines(FigureTest):
             if name != "stalls":
                 self.shows("loses pixels")
                 self.is_from(store, self.table, "front")
-                marked = {row["hash"] for row in self.table if int(row["cameras.left.dropped_pixels"])}
+                marked = {row["hash"] for row in self.table if int(row["lost_pixels"])}
                 self.assertEqual(marked, losing)
         change(store, 'UPDATE points SET "bound.system" = 0.9 * "frames_per_second.steady" '
-                      'WHERE "cameras.left.dropped_pixels" = 0 AND "matcher.window" = 9')
+                      'WHERE lost_pixels = 0 AND "matcher.window" = 9')
         order = "[host, result, left_pixel, right_pixel, left_lut, right_lut]"
         self.draw("window", store, only=[f"fpga.priority={order}"])
         self.shows("whole computer, steady frames/s", "from power-up, tables included",
@@ -241,7 +240,7 @@ class Stalls(FigureTest):
 
 
 class ParetoFront(FigureTest):
-    COLUMNS = ("area.luts", "latency_ms.capture_to_host.p50")
+    COLUMNS = ("area.luts", "latency_ms.capture_to_host.p50", "pci.clocks")
     HEADER = ("name", "run.source", "fpga.clock_mhz", *COLUMNS)
 
     def front(self, store, *senses):
@@ -257,22 +256,27 @@ class ParetoFront(FigureTest):
 
     def test_is_that_of_a_comparison_of_all_with_all(self):
         generator = random.Random(1)
-        pairs = [(generator.randrange(12), generator.randrange(12) / 4) for _ in range(60)]  # with equal ones
-        rows = [("made", "preloaded", number, *pair) for number, pair in enumerate([*pairs, (3, None)])]
+        made = [(generator.randrange(12), generator.randrange(12) / 4, generator.randrange(5))
+                for _ in range(60)]  # with equal ones
+        rows = [("made", "preloaded", number, *each) for number, each in enumerate([*made, (3, None, 1)])]
         store = make_database(self.folder / "random.db", self.HEADER, rows)
-        for senses in (("min", "max"), ("max", "min"), ("min", "min"), ("max", "max")):
+        for senses in (("min", "max"), ("max", "min"), ("min", "min"), ("max", "max"), ("min", "max", "min"),
+                       ("max", "max", "max")):
             with self.subTest(senses):
-                best = [pair for pair in pairs
-                        if not any(self.is_better(other, pair, senses) for other in pairs)]
+                values = [each[:len(senses)] for each in made]
+                best = [one for one in values
+                        if not any(self.is_better(other, one, senses) for other in values)]
                 self.assertEqual(self.front(store, *senses), f"60 points, {len(best)} of them on the front")
-                self.assertEqual(len(self.table), len(pairs))
-                front = [tuple(float(row[column]) for column in self.COLUMNS) for row in self.table
-                         if row["front"] == "1"]
+                self.assertEqual(len(self.table), len(made))
+                front = [tuple(float(row[column]) for column in self.COLUMNS[:len(senses)])
+                         for row in self.table if row["front"] == "1"]
+                self.assertEqual("pci.clocks" in " ".join(self.texts()), len(senses) == 3)
                 self.assertEqual(sorted(front), sorted(best))
         self.is_from(store, self.table, "front")
 
     def test_points_are_named_by_what_varies(self):
-        rows = [("made", "preloaded", *row) for row in ((40, 5, 9), (50, 7, 12), (60, 7, 12), (70, 8, 11))]
+        rows = [("made", "preloaded", *row, 1)
+                for row in ((40, 5, 9), (50, 7, 12), (60, 7, 12), (70, 8, 11))]
         self.front(make_database(self.folder / "named.db", self.HEADER, rows), "min", "max")
         self.shows("1  clock_mhz=40", "2  2 points", "area.luts, less is better")
 

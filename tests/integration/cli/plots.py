@@ -28,7 +28,7 @@ vary:
   ssram.default.kind: [zbt_pipelined, zbt_flow_through]
 """
 # Beginnings of the columns of made databases that are no keys.
-FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "cameras.left", "cameras.right")
+FIGURES_OF_RUNS = ("frames", "bound.", "area.", "latency_ms.", "pci.clocks", "lost_pixels")
 
 
 def quoted(name):
@@ -43,9 +43,9 @@ def make_database(path, header, rows):
     columns = ["hash", "status", "reason", "version", "config", *header]
     connection.execute(f"CREATE TABLE points({', '.join(map(quoted, columns))})")
     connection.execute("CREATE TABLE blame(hash, port, bank, by, cycles)")
-    connection.execute("CREATE TABLE keys(name)")
-    keys = [(column,) for column in header if not column.startswith(FIGURES_OF_RUNS)]
-    connection.executemany("INSERT INTO keys VALUES(?)", keys)
+    connection.execute("CREATE TABLE columns(name, unit, meaning, is_key, varied)")
+    of_columns = [(column, "", "", not column.startswith(FIGURES_OF_RUNS), 1) for column in header]
+    connection.executemany("INSERT INTO columns VALUES(?, ?, ?, ?, ?)", of_columns)
     marks = ", ".join("?" * len(columns))
     for number, row in enumerate(rows):
         values = (f"{number:064}", "ok", "", "0.1.0", "", *row)

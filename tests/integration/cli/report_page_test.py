@@ -419,7 +419,7 @@ class Rates(PageTest):
     """Rates that tie, and what sets their bounds. The page and `plot` have the same front."""
 
     HEADER = ["name", "run.source", "allocation.left_lut", "allocation.left_image", "area.slices",
-              "area.slices_percent", "cameras.left.dropped_pixels", "frames_per_second.core",
+              "area.slices_percent", "lost_pixels", "frames_per_second.core",
               "frames_per_second.steady",
               "frames_per_second.steady_uncertainty", "bound.core_limited_by", "bound.system_limited_by",
               "bound.system"]
@@ -428,7 +428,8 @@ class Rates(PageTest):
         """A database of points (slices, banks, steady rate, its uncertainty, % of the slices, lost
         pixels)."""
         rows = []
-        for slices, banks, rate, uncertainty, percent, pixels in ((*point, 50, 0)[:6] for point in points):
+        whole = [(*point, point[0] / 300, 0)[:6] for point in points]
+        for slices, banks, rate, uncertainty, percent, pixels in whole:
             pictures = "[" + ", ".join(f"bank{i}" for i in range(1, banks)) + "]"
             limits = ("bank bank0", "camera" if rate > 29 else "bank bank0")
             rows.append(("made", "camera", "bank0", pictures, slices, percent, pixels, 99, rate, uncertainty,
@@ -440,7 +441,7 @@ class Rates(PageTest):
 
     def fronts(self, *axes):
         """That of the page and that of `plot`, each from left to right."""
-        for name, axis in zip("xy", axes):
+        for name, axis in zip("xyz", axes):
             column, sense = axis.split(":")
             self.browser.choose(f"scatter-{name}", column)
             self.browser.choose(f"best-{name}", sense)
@@ -464,6 +465,9 @@ class Rates(PageTest):
                      ("frames_per_second.steady:max", "area.slices:min")):
             self.assertEqual(self.fronts(*axes), [front, front])
             self.assertIn("What lies within the uncertainty ties.", self.browser.text("#front-text"))
+        page, plot = self.fronts(*axes, "area.slices_percent:max")
+        self.assertEqual(page, plot)
+        self.assertGreater(len(page), len(front))
 
     def test_of_boards_that_do_not_fit_or_lose_pixels_are_not_the_fastest(self):
         self.open((14000, 8, 20, 0.5), (14000, 8, 30, 0, 101), (14000, 8, 30, 0, 99, 4))

@@ -69,12 +69,15 @@ export function addScatter(page, points, choose) {
   };
   const other = numbers.find(name => name !== y.name) ?? y.name;
   const x = {id: 'x', name: points.figures.includes('area.slices') ? 'area.slices' : other, best: 'min'};
+  const z = {id: 'z', name: '', best: 'min'};  // no name: the front is of two columns
+  const axesOfFront = () => [x, y, z].filter(axis => axis.name);
   const state = {colour: points.keys.find(key => new Set(points.column(key)).size <= kMostColours) ?? ''};
   let repaint = () => {};
   const frontText = h('p', {class: 'note', id: 'front-text'});
   const legendHost = h('div');
   const linesOf =
-      row => [y.name, x.name]
+      row => [y.name, x.name, z.name]
+                 .filter(Boolean)
                  .map(name => `${name} ${points.textWithLoss(name, row)}`)
                  .concat(points.keys.slice(0, 8).map(key => `${key}: ${value(points.column(key)[row])}`));
 
@@ -103,22 +106,24 @@ export function addScatter(page, points, choose) {
             context.fillRect(left, above, size, size);
         });
       }
-      const front = points.isNumeric(x.name) && points.isNumeric(y.name) ? points.front(x, y) : [];
+      const front =
+          axesOfFront().every(axis => points.isNumeric(axis.name)) ? points.front(axesOfFront()) : [];
       const edges = [x.best === 'min' ? inner : 0, y.best === 'min' ? 0 : height];
       const dot = (row, attributes) => s('circle', {cx: across.at[row], cy: up.at[row], ...attributes});
       const spots = front.map(row => {
         const go = event => (event.type === 'click' || event.key === 'Enter') && choose(row);
         return mark(dot(row, {r: 5, class: 'on-front', click: go, keydown: go}), linesOf(row));
       });
+      const steps = stepsOf(front.map(spot), edges).join(' ');
       frontLayer.replaceChildren(
-          s('polyline', {class: 'front', points: stepsOf(front.map(spot), edges).join(' ')}), ...spots,
+          ...z.name ? [] : [s('polyline', {class: 'front', points: steps})], ...spots,
           ...points.chosen >= 0 ? [dot(points.chosen, {r: 9, class: 'chosen'})] : []);
       linkMarks(host);
       const crosses = points.losing() > 0 ?
           ` Pixels are lost in ${whole(points.losing(points.selectedRows()))} of the points (×), ${
               whole(points.losing(front))} of the front.` :
           '';
-      const ties = [x, y].some(({name}) => points.hasUncertainty(name));
+      const ties = axesOfFront().some(({name}) => points.hasUncertainty(name));
       frontText.textContent = `${count(points.count, 'point')} of ${whole(points.size)} selected; ${
           whole(front.length)} of them on the front.${crosses}${
           ties ? ' What lies within the uncertainty ties.' : ''}`;
@@ -160,9 +165,8 @@ export function addScatter(page, points, choose) {
     plot.append(frontLayer);
     repaint();
   };
-  const pick = (id, label, chosen, names, change) =>
-      h('label', null, `${label} `,
-        choice(id, names.map(name => [name, name || 'one colour']), chosen, name => {
+  const pick = (id, label, chosen, names, change, none = 'one colour') =>
+      h('label', null, `${label} `, choice(id, names.map(name => [name, name || none]), chosen, name => {
           change(name);
           points.filter('scatter', null);
           chart.redraw();
@@ -177,10 +181,13 @@ export function addScatter(page, points, choose) {
   const chart = addChart(page, {
     id: 'scatter',
     wide: true,
-    title: 'Two columns, and the points that no other beats',
+    title: 'Two or three columns, and the points that no other beats',
     draw,
     body: [
       pickAxis(x), pickAxis(y),
+      controls(
+          pick('scatter-z', 'third', z.name, ['', ...numbers], name => Object.assign(z, {name}), 'none'),
+          pick('best-z', 'better:', z.best, ['min', 'max'], best => Object.assign(z, {best}))),
       controls(
           pick(
               'scatter-colour', 'colour', state.colour, ['', ...points.names],
@@ -190,7 +197,8 @@ export function addScatter(page, points, choose) {
     ],
     note:
         'Drag to select points, click one for its board. Arrow keys go along the front, Enter opens a point.',
-    numbers: () => points.numbers([...new Set([x.name, y.name, ...points.keys])], points.front(x, y))
+    numbers: () => points.numbers(
+        [...new Set([...axesOfFront().map(axis => axis.name), ...points.keys])], points.front(axesOfFront()))
   });
   points.whenSelected(() => repaint());
   return {redraw: () => repaint()};

@@ -1,8 +1,8 @@
 // The points of a database: their columns, which of them are selected, and the front of Pareto.
-import {kRates, lossText, sum, value} from './format.js';
+import {kRates, lossText, value} from './format.js';
 
 export const kRateColumns = kRates.map(([name]) => `frames_per_second.${name}`);
-export const kLostPixels = 'lost_pixels';  // the sum of both cameras
+export const kLostPixels = 'lost_pixels';
 
 // Rates and prices first, then keys, then the other figures.
 const kFirst = [
@@ -15,7 +15,7 @@ export class Points {
     this.size = points;
     this.columns = new Map(columns.map(({name, ...column}) => [name, column]));
     this.addShares();
-    this.addLostPixels();
+    this.lost = (this.has(kLostPixels) ? this.column(kLostPixels) : new Array(points).fill(0)).map(Number);
     this.keys = keys.filter(key => this.has(key) && !this.isConstant(key));
     this.constantKeys = keys.filter(key => this.has(key) && this.isConstant(key));
     const figures = this.allNames.filter(name => !keys.includes(name));
@@ -44,12 +44,6 @@ export class Points {
       const list = this.column(name).map((each, row) => each === null ? null : factor * each / cycles[row]);
       this.columns.set(target, {list});
     }
-  }
-  addLostPixels() {
-    const lists = this.allNames.filter(name => /^cameras\..*\.dropped_pixels$/.test(name))
-                      .map(name => this.column(name));
-    this.lost = Array.from({length: this.size}, (_, row) => sum(lists.map(list => list[row])));
-    if (this.lost.some(pixels => pixels > 0)) this.columns.set(kLostPixels, {list: this.lost});
   }
   losing(rows = [...this.lost.keys()]) {
     return rows.filter(row => this.lost[row] > 0).length;
@@ -157,28 +151,30 @@ export class Points {
     return {best, ties};
   }
 
-  // The selected points that no other beats, from the best x on. From one point to the next the exact column
-  // (without uncertainty) becomes worse, and the other better by more than the sum of both uncertainties.
-  // Points that are equal in the exact column, and tie in the other, are all on the front.
-  front(x, y) {
-    const worse = axis => this.column(axis.name).map(
-        v => typeof v !== 'number' ? NaN :
-            axis.best === 'min'    ? v :
-                                     -v);
-    const [xs, ys] = [worse(x), worse(y)];
-    const isOpen = this.hasUncertainty(x.name);
-    const [along, across] = isOpen ? [ys, xs] : [xs, ys];
-    const open = this.uncertainty((isOpen ? x : y).name);
-    const rows = this.selectedRows().filter(row => !Number.isNaN(xs[row] + ys[row]));
-    rows.sort((a, b) => along[a] - along[b] || across[a] - across[b]);
+  // The selected points that no other beats, from the best value of the first axis on. A point beats another
+  // if it is better in one column and worse in none, by more than both uncertainties together. Exact columns
+  // decide the order in which points are looked at.
+  front(axes) {
+    const values = axes.map(
+        axis => this.column(axis.name).map(
+            v => typeof v !== 'number' ? NaN :
+                axis.best === 'min'    ? v :
+                                         -v));
+    const open = axes.map(axis => this.uncertainty(axis.name));
+    const order = [...axes.keys()].sort(
+        (a, b) => this.hasUncertainty(axes[a].name) - this.hasUncertainty(axes[b].name));
+    const rows = this.selectedRows().filter(row => values.every(list => !Number.isNaN(list[row])));
+    rows.sort((a, b) => order.map(axis => values[axis][a] - values[axis][b]).find(each => each !== 0) ?? 0);
     const front = [];
-    let last = rows[0];  // the next one has to beat it
     for (const row of rows) {
-      const loss = across[row] - across[last];
-      const both = row === last ? 0 : open[row] + open[last];
-      if (loss < -both) last = row;
-      if (row === last || (loss <= both && along[row] === along[last])) front.push(row);
+      const beats = other => {
+        const loss = axes.map((axis, i) => values[i][row] - values[i][other]);
+        const both = axes.map((axis, i) => open[i][row] + open[i][other]);
+        return loss.some((each, i) => each > both[i]) && loss.every((each, i) => each >= -both[i]);
+      };
+      if (!front.some(beats)) front.push(row);
     }
+    const [xs, ys] = values;
     return front.sort((a, b) => xs[a] - xs[b] || ys[b] - ys[a]);
   }
 }

@@ -102,7 +102,11 @@ std::string reason_against(const std::string& text) {
 TEST(Conditions, AreRefusedWithTheReason) {
   // [reason]: texts; without a reason they are expressions
   const std::vector<std::pair<std::string, std::vector<std::string>>> refusals = {
-      {"no such column: image.widht", {"image.widht = 640"}},
+      {"no such column: image.widht; nearest: image.width", {"image.widht = 640"}},
+      {"no such column: windw; nearest: matcher.window", {"windw > 5"}},
+      {"no such column: matcher.window; write the key without quotes", {"\"matcher.window\" > 5"}},
+      {"no such column: frames_per_second.core; a figure is not known before the point is simulated",
+       {"frames_per_second.core > 5"}},
       {"ambiguous column name: clock_mhz", {"clock_mhz = 40"}},
       {"no such column: log7", {"matcher.filter = \"log7\""}},
       {"incomplete input", {"image.width =", "", "((1)", "1 /* a comment"}},

@@ -94,16 +94,45 @@ TEST_F(StoreTest, TakesPointsWithAnyColumnsFromSeveralConnections) {
               ElementsAre("h1|7||", "h2|7||", "h3||2.5|a'b", "h4||2.5|a'b", "h5|7||"));
 }
 
-TEST_F(StoreTest, ListsTheColumnsThatHoldKeys) {
+TEST_F(StoreTest, DescribesItsColumns) {
   StoredPoint other = point("h2");
   other.keys.push_back({"bridge.posted_words", std::int64_t{64}});
   other.figures.values.push_back({"bridge.posted_words.counted", std::int64_t{9}});
   add("a.db", {point("h1")});
   add("b.db", {other});
   merge({"a.db", "b.db"}, "ab.db");
-  EXPECT_THAT(rows("a.db", "SELECT name FROM keys"), ElementsAre("image.width"));
-  for (const char* const name : {"b.db", "ab.db"})
-    EXPECT_THAT(rows(name, "SELECT name FROM keys"), ElementsAre("bridge.posted_words", "image.width"));
+  const std::string all = "SELECT name, unit, meaning, varied FROM columns WHERE ";
+  EXPECT_THAT(rows("a.db", all + "is_key"), ElementsAre("image.width|pixels|width of the images, at most "
+                                                        "2048 with a look-up table|"));
+  EXPECT_THAT(rows("ab.db", all + "is_key"),
+              ElementsAre("bridge.posted_words|words|posted writes that the bridge can hold|1",
+                          "image.width|pixels|width of the images, at most 2048 with a look-up table|0"));
+  EXPECT_THAT(rows("ab.db", all + "name LIKE '%counted' OR name = 'hash'"),
+              ElementsAre("bridge.posted_words.counted|words|that masters wrote into the bridge|1",
+                          "hash||SHA-256 of board and run|1"));
+  add("ab.db", {point("h3")});
+  EXPECT_THAT(rows("ab.db", "SELECT DISTINCT varied FROM columns"), ElementsAre("")) << "until it is merged";
+}
+
+TEST_F(StoreTest, ComparesFiguresAmongThePointsThatHaveThem) {
+  StoredPoint impossible = point_with_key("h0", "image.width");
+  impossible.status = "impossible";
+  add("a.db", {impossible, point("h1"), point("h2")});
+  merge({"a.db"}, "a.db");
+  EXPECT_THAT(rows("a.db", "SELECT name FROM columns WHERE varied ORDER BY 1"),
+              ElementsAre("config", "hash", "image.width", "status"));
+}
+
+TEST_F(StoreTest, HasAViewWhoseNamesNeedNoQuotes) {
+  StoredPoint other = point("h1");
+  other.figures.values = {{"banks.a-b.reads", std::int64_t{1}}, {"banks.a_b.reads", std::int64_t{2}}};
+  const std::string query = "SELECT image_width, banks_a_b_reads, banks_a_b_reads_2 FROM plain";
+  add("a.db", {other});
+  EXPECT_THAT(rows("a.db", query), ElementsAre("640|1|2"));
+  merge({"a.db"}, "a.db");
+  EXPECT_THAT(rows("a.db", query), ElementsAre("640|1|2"));
+  EXPECT_THAT(message_of([&] { rows("a.db", "SELECT image_widht FROM plain"); }),
+              HasSubstr("no such column: image_widht"));
 }
 
 TEST_F(StoreTest, HoldsPointsOfOneVersion) {
@@ -130,7 +159,7 @@ TEST_F(StoreTest, RefusesFilesThatAreNotItsOwn) {
   make("foreign.db", "CREATE TABLE points(x)");
   make("early.db", "PRAGMA application_id = 0x53544C4D; PRAGMA user_version = 1; CREATE TABLE points(hash)");
   const std::string layout =
-      file("early.db") + ": its layout is 1, of another version; this version writes 2";
+      file("early.db") + ": its layout is 1, of another version; this version writes 3";
   EXPECT_EQ(open_error("text"), file("text") + ": not a database");
   EXPECT_THAT(merge_error({"a.db"}, "text"), HasSubstr("text: not a database"));
   EXPECT_EQ(read_file(file("text")), std::string(5000, 'x'));
