@@ -9,7 +9,7 @@
 
 namespace stereotlm::test {
 
-inline constexpr std::size_t kRtlBanks = 10;
+inline constexpr std::size_t kRtlBanks = 6;
 inline constexpr std::size_t kRtlPorts = 5;  // of the core; in the order of stereo_core.v
 
 // The inputs of stereo_core in a cycle.

@@ -51,6 +51,15 @@ RandomBoard board_of(const json& set, std::uint64_t seed) {
     };
     fix_table(board.left_lut, board.left_image.back(), set["left_table"]);
     fix_table(board.right_lut, board.left_image.front(), set["right_table"]);
+    board.banks.resize(std::min(board.banks.size(), kRtlBanks));
+    const auto use_banks_there_are = [&](PlainBuffer& buffer) {
+      for (int& bank : buffer.banks) bank %= static_cast<int>(board.banks.size());
+    };
+    for (auto* list : {&board.left_image, &board.right_image, &board.disparity})
+      std::for_each(list->begin(), list->end(), use_banks_there_are);
+    for (auto* lut : {&board.left_lut, &board.right_lut}) {
+      if (*lut) use_banks_there_are(**lut);
+    }
   });
 }
 

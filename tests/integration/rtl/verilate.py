@@ -5,6 +5,7 @@ usage: verilate.py SETS NAME RTL OUT     writes OUT/NAME.cpp; SETS is sets.json,
 """
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -30,7 +31,7 @@ def parameters(wanted):
         "HAS_CHECK": int(tolerance is not None), "TOLERANCE": tolerance or 0,
         "LEFT_TABLE": int(wanted["left_table"]), "RIGHT_TABLE": int(wanted["right_table"]),
         "LANE_FIFO_SLOTS": wanted["lane_fifo_slots"], "RESULT_FIFO_WORDS": wanted["result_fifo_words"],
-        "RESULT_DELAY_CYCLES": wanted["result_delay_cycles"], "BANKS": 10,
+        "RESULT_DELAY_CYCLES": wanted["result_delay_cycles"], "BANKS": 6,
     }
 
 
@@ -38,6 +39,7 @@ def main():
     sets, name, rtl, out = sys.argv[1:]
     wanted = next(each for each in json.loads(pathlib.Path(sets).read_text()) if each["name"] == name)
     folder = pathlib.Path(out) / name
+    shutil.rmtree(folder, ignore_errors=True)  # files of another run have other names
     given = [f"-G{key}={value}" for key, value in parameters(wanted).items()]
     sources = sorted(pathlib.Path(rtl).glob("*.v"))
     subprocess.run(["verilator", "--cc", "-Wall", "-O3", "--x-initial", "unique", "--top-module", "stereo_core",

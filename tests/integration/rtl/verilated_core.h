@@ -32,8 +32,8 @@ class VerilatedCore : public RtlCore {
     model_.turnaround = 0;
     model_.latency_2 = 0;
     for (std::size_t bank = 0; bank < kRtlBanks; ++bank) {
-      model_.turnaround |= std::uint64_t{inputs.turnaround[bank]} << 5 * bank;
-      model_.latency_2 |= static_cast<std::uint16_t>(inputs.latency_2[bank] << bank);
+      model_.turnaround |= inputs.turnaround[bank] << 5 * bank;
+      model_.latency_2 = static_cast<std::uint8_t>(model_.latency_2 | inputs.latency_2[bank] << bank);
       model_.bank_read_data[bank] = inputs.read_data[bank];
     }
     for (std::size_t port = 0; port < kRtlPorts; ++port) model_.bases[port] = inputs.bases[port];
