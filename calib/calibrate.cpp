@@ -50,19 +50,6 @@ void find_grids(const CalibrationRequest& request, CalibrationResult& result) {
       result.pairs.size(), request.pictures.size(), kFewestPairs, hint, reasons));
 }
 
-// What no offset can mend.
-void check_disparities(const Rig& rig, const DisparityRange& range) {
-  constexpr int kMost = 254;
-  if (range.needed() <= kMost) return;
-  const double turn = kDegrees * std::atan2(rig.rotation(0, 2), rig.rotation(2, 2));
-  throw std::invalid_argument(fmt::format(
-      "refused: the grid's disparities are {:.0f} .. {:.0f}, {} of them, and a board has {} at most: one "
-      "camera "
-      "is turned to the side by {:.0f} degrees against the other: turn them parallel, or photograph the grid "
-      "farther away",
-      range.min, range.max, range.needed(), kMost, std::abs(turn)));
-}
-
 // Adds the errors of depths at the nearest, the middle and the farthest disparity of the board.
 void add_depths(Calibration& made, const RigCovariance& covariance) {
   for (const int disparity : {made.disparities - 1, made.disparities / 2, 1}) {
@@ -138,7 +125,7 @@ std::optional<HeldOut> held_out(const CalibrationRequest& request, const RigFit&
     for (std::size_t i = group; i < pairs.size(); i += groups)
       used[pairs[i]].assign(used[pairs[i]].size(), false);
     const Rig rig = solve_rig(request.grid, corners, used, fit.rig, fit.lens,
-                              fit.evidence.lenses_are_kept ? Lenses::kKept : Lenses::kFitted);
+                              fit.evidence.has_fixed_intrinsics ? Intrinsics::kFixed : Intrinsics::kFitted);
     const Rectification rectification = rectify(rig);
     for (std::size_t i = group; i < pairs.size(); i += groups) {
       const std::size_t pair = pairs[i];
@@ -220,7 +207,6 @@ CalibrationResult calibrate(const CalibrationRequest& request) {
   quality.right_rms_px = fit.right_rms_px;
   quality.stereo_rms_px = fit.stereo_rms_px;
   measure(result.pairs, made);
-  if (!request.disparity_offset) check_disparities(made.rig, quality.disparities);
   made.disparity_offset = request.disparity_offset
                               ? *request.disparity_offset
                               : disparity_offset_for(quality.disparities, request.disparities);

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "models/kernels/limits.h"
+
 namespace stereotlm::calib {
 namespace {
 
@@ -199,7 +201,7 @@ Certainty certainty_of(const Reader& file) {
   Certainty its;
   its.alone_rms_px = file.number("alone_rms_px");
   its.rig_rms_px = file.number("rig_rms_px");
-  its.lenses_are_kept = file.integer("lenses_are_kept", 0, 1) == 1;
+  its.has_fixed_intrinsics = file.integer("has_fixed_intrinsics", 0, 1) == 1;
   its.focal_sigma_px = file.number("focal_sigma_px");
   its.centre_sigma_px = file.number("centre_sigma_px");
   its.baseline_sigma_mm = file.number("baseline_sigma_mm");
@@ -224,7 +226,7 @@ Calibration calibration_of(const Reader& file) {
   result.rig.width = file.integer("image_width", 1, kMostPixels);
   result.rig.height = file.integer("image_height", 1, kMostPixels);
   result.disparity_offset = file.integer("disparity_offset", -kMostPixels, kMostPixels);
-  result.disparities = file.integer("disparities", 1, 254);
+  result.disparities = file.integer("disparities", 1, kernels::kDisparitiesRule.max);
   result.rig.left = file.camera("M1", "D1");
   result.rig.right = file.camera("M2", "D2");
   result.rig.rotation = file.rotation("R");
@@ -273,6 +275,14 @@ int DisparityRange::needed() const {
 int disparity_offset_for(const DisparityRange& range, int disparities) {
   const int least = static_cast<int>(std::floor(range.min));
   const int room = disparities - range.needed();
+  constexpr int kMost = kernels::kDisparitiesRule.max;
+  if (range.needed() > kMost) {
+    throw std::invalid_argument(
+        fmt::format("refused: the grid's disparities are {}..{}, and a board has {} at most: turn the "
+                    "cameras parallel, or "
+                    "photograph the grid farther away",
+                    least, least + range.needed() - 1, kMost));
+  }
   if (room < 0) {
     throw std::invalid_argument(
         fmt::format("--disparities = {}: must be {} or more for the grid's own, {}..{}; or "

@@ -35,10 +35,10 @@ void write(cv::FileStorage& file, const Quality& quality) {
 void write(cv::FileStorage& file, const Certainty& its) {
   file << "certainty"
        << "{"
-       << "alone_rms_px" << its.alone_rms_px << "rig_rms_px" << its.rig_rms_px << "lenses_are_kept"
-       << static_cast<int>(its.lenses_are_kept) << "focal_sigma_px" << its.focal_sigma_px << "centre_sigma_px"
-       << its.centre_sigma_px << "baseline_sigma_mm" << its.baseline_sigma_mm << "turn_sigma_deg"
-       << its.turn_sigma_deg << "tilt_deg" << its.tilt_deg << "depth_errors"
+       << "alone_rms_px" << its.alone_rms_px << "rig_rms_px" << its.rig_rms_px << "has_fixed_intrinsics"
+       << static_cast<int>(its.has_fixed_intrinsics) << "focal_sigma_px" << its.focal_sigma_px
+       << "centre_sigma_px" << its.centre_sigma_px << "baseline_sigma_mm" << its.baseline_sigma_mm
+       << "turn_sigma_deg" << its.turn_sigma_deg << "tilt_deg" << its.tilt_deg << "depth_errors"
        << "[";
   for (const DepthError& each : its.depths) {
     file << "{"

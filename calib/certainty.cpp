@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace stereotlm::calib {
 namespace {
@@ -141,7 +140,7 @@ Certainty certainty_of(const RigFit& fit, const RigCovariance& covariance) {
   result.alone_rms_px = fit.evidence.alone_rms_px;
   result.rig_rms_px = fit.evidence.rig_rms_px;
   result.tilt_deg = fit.evidence.tilt_deg;
-  result.lenses_are_kept = fit.evidence.lenses_are_kept;
+  result.has_fixed_intrinsics = fit.evidence.has_fixed_intrinsics;
   for (const int first : {0, kCamera}) {
     result.focal_sigma_px = std::max({result.focal_sigma_px, sigma(first), sigma(first + 1)});
     result.centre_sigma_px = std::max({result.centre_sigma_px, sigma(first + 2), sigma(first + 3)});

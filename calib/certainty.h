@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "calib/rig_fit.h"
@@ -19,7 +18,7 @@ struct DepthError {
 struct Certainty {
   double alone_rms_px = 0;  // Evidence
   double rig_rms_px = 0;
-  bool lenses_are_kept = false;
+  bool has_fixed_intrinsics = false;
   double focal_sigma_px = 0;       // of a focal length, the largest of both cameras
   double centre_sigma_px = 0;      // of a coordinate of a centre, likewise
   double baseline_sigma_mm = 0;    // of the distance of the cameras
@@ -28,11 +27,13 @@ struct Certainty {
   std::vector<DepthError> depths;  // nearest, middle and farthest disparity of the board
 };
 
-// The covariance of fx, fy, cx, cy, k1, k2, p1, p2, k3 of the left and the right camera, of the rotation
-// vector (rad) and of the translation (mm). A k3 that is taken as 0 counts as one that moves
-// the corner of the picture by 0 +- 5 % of its distance from the centre. Throws as CameraModel::direction().
+// fx, fy, cx, cy, k1, k2, p1, p2, k3 of the left and of the right camera, the rotation vector (rad) and the
+// translation (mm).
 constexpr int kRigParameters = 24;
 using RigCovariance = Eigen::Matrix<double, kRigParameters, kRigParameters>;
+
+// The covariance of the parameters. A k3 that is taken as 0 may in truth move the corner of the picture by 5
+// % of its distance from the centre (one sigma). Throws as CameraModel::direction().
 RigCovariance covariance(const RigFit& fit, const GridShape& shape, const std::vector<GridPair>& pairs);
 
 // Without the depths.

@@ -37,7 +37,7 @@ std::string worst_pairs(const GridViews& views, const RigFit& fit) {
                         evidence.disagreement_mm)
           : fmt::format("{}, the rig to {:.2f} px; worst {}", alone, evidence.rig_rms_px,
                         worst_pairs(views, fit));
-  if (const auto mistake = find_misarrangement(views, fit.rig)) {
+  if (const auto mistake = find_picture_mistake(views, fit.rig)) {
     refuse(fmt::format("{}: {}; if that is undone, the rig fits to {:.2f} px: {}", mistake->cause, measured,
                        mistake->rig_rms_px, mistake->cure));
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "calib/arrangement.h"
 #include "calib/certainty.h"
+#include "calib/picture_mistakes.h"
 #include "calib/rig_fit.h"
 
 namespace stereotlm::calib {

@@ -136,7 +136,8 @@ std::optional<std::string> problem_of(const Rig& rig) {
   const double roll = rig.roll_deg();
   if (roll > kMostRoll) {
     return fmt::format(
-        "one camera is turned by {:.0f} degrees about its axis against the other: both must be upright",
+        "one camera is turned by {:.0f} degrees about its axis against the other: both must be upright: "
+        "turn the camera back, or turn its pictures if all have one size then",
         roll);
   }
   if (std::abs(t.y()) > std::abs(t.x())) {

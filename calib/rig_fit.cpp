@@ -213,11 +213,11 @@ bool has_few_pairs(const Used& used) {
 }
 
 RigFit fit_once(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
-                const Rig& guess, Lens lens, Lenses lenses = Lenses::kFitted) {
+                const Rig& guess, Lens lens, Intrinsics intrinsics = Intrinsics::kFitted) {
   RigFit fit;
   fit.used = used;
   fit.lens = lens;
-  fit.rig = solve_rig(shape, pairs, used, guess, lens, lenses);
+  fit.rig = solve_rig(shape, pairs, used, guess, lens, intrinsics);
   const std::vector<bool> all(static_cast<std::size_t>(shape.corners()), true);
   for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
     fit.misfits.push_back(misfit(fit.rig, shape, pairs[pair], is_used(used[pair]) ? used[pair] : all));
@@ -287,9 +287,10 @@ Evidence evidence_of(const SingleFits& alone) {
 }
 
 // The rig that has the lenses of the single fits.
-RigFit fit_kept(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
-                const SingleFits& alone, cv::Size size, Lens lens) {
-  RigFit fit = fit_once(shape, pairs, used, guess_of(alone.left, alone.right, size), lens, Lenses::kKept);
+RigFit fit_with_fixed_intrinsics(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used,
+                                 const SingleFits& alone, cv::Size size, Lens lens) {
+  RigFit fit =
+      fit_once(shape, pairs, used, guess_of(alone.left, alone.right, size), lens, Intrinsics::kFixed);
   add_figures(fit);
   fit.evidence = evidence_of(alone);
   fit.evidence.rig_rms_px = fit.stereo_rms_px;
@@ -375,7 +376,7 @@ double Misfit::rms_px() const {
 }
 
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const Used& used, const Rig& guess,
-              Lens lens, Lenses lenses) {
+              Lens lens, Intrinsics intrinsics) {
   const Observations seen = observations(shape, pairs, used);
   return with_refusal([&] {
     cv::Mat m1 = to_mat(guess.left.matrix);
@@ -385,11 +386,11 @@ Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs, const 
     cv::Mat rotation, translation, essential, fundamental;
     constexpr int kMostSteps = 200;
     constexpr double kCloseEnough = 1e-9;
-    cv::stereoCalibrate(
-        seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height}, rotation,
-        translation, essential, fundamental,
-        lenses == Lenses::kKept ? cv::CALIB_FIX_INTRINSIC : cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
-        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
+    cv::stereoCalibrate(seen.points, seen.left, seen.right, m1, d1, m2, d2, {guess.width, guess.height},
+                        rotation, translation, essential, fundamental,
+                        intrinsics == Intrinsics::kFixed ? cv::CALIB_FIX_INTRINSIC
+                                                         : cv::CALIB_USE_INTRINSIC_GUESS | flags_of(lens),
+                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMostSteps, kCloseEnough});
     return Rig{guess.width,
                guess.height,
                to_camera(m1, d1),
@@ -446,13 +447,13 @@ RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<
   }
   add_figures(fit);
   const SingleFits alone = fit_cameras(observations(shape, pairs, fit.used), guess, lens);
-  RigFit kept = fit_kept(shape, pairs, fit.used, alone, size, lens);
+  RigFit kept = fit_with_fixed_intrinsics(shape, pairs, fit.used, alone, size, lens);
   const bool is_bent = alone.are_bent_by(fit.rig);
   Evidence evidence = kept.evidence;
   evidence.has_few_pairs = has_few;
   if (!is_bent) evidence.rig_rms_px = std::min(evidence.rig_rms_px, fit.stereo_rms_px);
-  evidence.lenses_are_kept = is_bent && evidence.ratio() >= kSuspicious;
-  if (evidence.lenses_are_kept) fit = std::move(kept);
+  evidence.has_fixed_intrinsics = is_bent && evidence.ratio() >= kSuspicious;
+  if (evidence.has_fixed_intrinsics) fit = std::move(kept);
   fit.evidence = evidence;
   return fit;
 }
@@ -461,7 +462,7 @@ std::optional<RigFit> fit_all(const GridShape& shape, const std::vector<GridPair
   const Used all(pairs.size(), std::vector<bool>(static_cast<std::size_t>(shape.corners()), true));
   const SingleFits alone = fit_cameras(observations(shape, pairs, all), guess, Lens::kFull);
   if (!nearly_agree(places_of(alone.left, alone.right))) return std::nullopt;
-  return fit_kept(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull);
+  return fit_with_fixed_intrinsics(shape, pairs, all, alone, {guess.width, guess.height}, Lens::kFull);
 }
 
 Rectification rectify(const Rig& rig) {

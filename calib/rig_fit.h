@@ -31,14 +31,15 @@ struct LeftOutCorner {
 // Whether all five coefficients of the lens are fitted, or k3 stays 0.
 enum class Lens : std::uint8_t { kFull, kWithoutK3 };
 
-// How well each camera fits by itself, and both as a rig. A rig fits as well as its cameras, if the two
+// How well each camera fits by itself, and how well both fit as a rig. They fit equally well if the two
 // pictures of each pair show the grid at the same place.
 struct Evidence {
-  double alone_rms_px = 0;       // reprojection of the worse camera, which is fitted by itself
-  double rig_rms_px = 0;         // of both cameras with the lenses of these fits
-  double tilt_deg = 0;           // the largest angle between a grid and the picture of the left camera alone
-  bool lenses_are_kept = false;  // whether the rig has these lenses, because a joint fit would bend them
-  bool has_few_pairs = false;    // whether fewer than kFewestPairs fit, so that no corner was left out
+  double alone_rms_px = 0;  // reprojection of the worse camera, which is fitted by itself
+  double rig_rms_px = 0;    // of both cameras with the intrinsics of these fits
+  double tilt_deg = 0;      // the largest angle between a grid and the picture of the left camera alone
+  // Whether the rig has the intrinsics of these fits, because a joint fit would bend the lenses.
+  bool has_fixed_intrinsics = false;
+  bool has_few_pairs = false;  // whether fewer than kFewestPairs fit, so that no corner was left out
 
   // The median distance between the places of the right camera by each pair and by their median, mm, if it is
   // so large that no rig was fitted. Else 0.
@@ -70,25 +71,28 @@ inline constexpr std::size_t kFewestPairs = 3;
 // out on both sides if its misfit is above max(8 * median, 0.1 pixels). A pair is left out if it keeps less
 // than half of its corners, or if the rig fits to it 1.8 times worse, compared with each camera alone, than
 // to the median pair. The fit is repeated until it uses the same corners again. Then each camera is fitted by
-// itself to these corners. The result has the lenses of these fits, if the rig fits 1.5 times worse than its
-// cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma. If the pairs do
-// not nearly agree where the cameras stand, or if one is turned by more than kMostRoll, no corner is fitted
-// and only the lenses of single fits are the result. The caller looks at RigFit::evidence. Throws
-// std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if OpenCV finds no rig.
+// itself to these corners. The result has the intrinsics of these fits, if the rig fits 1.5 times worse than
+// its cameras or more, and the joint fit moved a focal length or a centre by more than 3 sigma. If the pairs
+// do not nearly agree where the cameras stand, or if one is turned by more than kMostRoll, no corner is
+// fitted and the result has the intrinsics of single fits and no misfits. The caller looks at
+// RigFit::evidence. Throws std::invalid_argument if fewer than kFewestPairs are given; std::runtime_error if
+// OpenCV finds no rig.
 RigFit fit_rig(const GridShape& shape, int width, int height, const std::vector<GridPair>& pairs,
                Lens lens = Lens::kFull);
 
-// The rig with the lenses of single fits to all corners of all pairs, of which none is left out. The fits
+// The rig with the intrinsics of single fits to all corners of all pairs, of which none is left out. The fits
 // start at the cameras of `guess`. Nullopt if the pairs do not nearly agree where the cameras stand. Throws
 // std::runtime_error if OpenCV finds no rig.
 std::optional<RigFit> fit_all(const GridShape& shape, const std::vector<GridPair>& pairs, const Rig& guess);
 
-// One fit to the used corners, starting at the cameras of `guess`, whose lenses it may change unless they are
-// kept. Throws std::runtime_error if OpenCV finds no rig.
-enum class Lenses : std::uint8_t { kFitted, kKept };
+// Whether a fit may change the focal lengths, centres and lenses at which it starts.
+enum class Intrinsics : std::uint8_t { kFitted, kFixed };
+
+// One fit to the used corners, starting at the cameras of `guess`. Throws std::runtime_error if OpenCV finds
+// no rig.
 Rig solve_rig(const GridShape& shape, const std::vector<GridPair>& pairs,
               const std::vector<std::vector<bool>>& used, const Rig& guess, Lens lens,
-              Lenses lenses = Lenses::kFitted);
+              Intrinsics intrinsics = Intrinsics::kFitted);
 
 // The misfit of all corners of a pair. The grid is placed where the used corners fit best.
 Misfit misfit(const Rig& rig, const GridShape& shape, const GridPair& pair, const std::vector<bool>& used);

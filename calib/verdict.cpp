@@ -38,11 +38,17 @@ std::string verdict_of(const Calibration& calibration) {
     weak.push_back(fmt::format("{} of {} pairs do not fit, and are left out: look at their pictures",
                                left_out, calibration.sources.size()));
   }
+  if (calibration.quality.found_again.corners == 0) {
+    weak.push_back(
+        "no grid lies whole in both rectified pictures, so that their rows were not compared: add pairs with "
+        "the "
+        "grid in the middle");
+  }
   if (!weak.empty()) return fmt::format("usable: {}", fmt::join(weak, "; "));
   return fmt::format(
-      "good: the rig fits as well as its cameras ({:.2f} and {:.2f} px), and one sigma of the "
-      "focal length is {:.2g} %, of the baseline {:.2g} %",
-      its.rig_rms_px, its.alone_rms_px, focal, baseline);
+      "good: each camera alone fits to {:.2f} px, the rig to {:.2f} px; one sigma of the focal length "
+      "is {:.2g} %, of the baseline {:.2g} %",
+      its.alone_rms_px, its.rig_rms_px, focal, baseline);
 }
 
 }  // namespace stereotlm::calib

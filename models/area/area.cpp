@@ -400,9 +400,12 @@ void add_left_right_check(const Core& core, Items& items) {
 
 // Contract 1.5 and section 2, "Matcher": the first three disparities of a word wait for the fourth; words
 // wait in the queue. With several rows, the words of all rows are complete in the same cycle. Each whole word
-// waits until the queue takes it; the queue takes one word per cycle.
+// waits until the queue takes it; the queue takes one word per cycle. A delay (contract 7.11) is that of the
+// disparities before they are packed: those of all rows, and a bit that says that they are there.
 void add_results(const Core& core, Items& items) {
   const int rows = core.config.rows;
+  if (const int delay = core.config.result_delay_cycles; delay > 0)
+    add("result delay", rows, shift_register(delay, rows * kDisparityBits + kValidBit), items);
   const Resources packers = rows == 1 ? registers(kWordBits - kDisparityBits)
                                       : rows * registers(kWordBits) + multiplexer(rows, kWordBits);
   add("result packer", rows, packers, items);

@@ -8,6 +8,7 @@
 
 #include "models/fpga/core_config.h"
 #include "models/fpga/frame_geometry.h"
+#include "models/kernels/rectification_table.h"
 
 namespace stereotlm::fpga {
 
@@ -19,9 +20,11 @@ class AccessPattern {
   // At first every entry is its own source, as on a side without table.
   AccessPattern(const FrameGeometry& geometry, PixelCache cache);
 
-  // Takes width * height entries, row-major. They must stay as long as entry() is called.
+  // Takes width * height entries, row-major. They must stay as long as entry() is called. Without them the
+  // entries are the identity.
   void set_entries(const std::uint32_t* entries);
   std::uint32_t entry(int column, int row) const {
+    if (entries_ == nullptr) return kernels::make_entry(column, row);
     return entries_[static_cast<std::size_t>(row) * static_cast<std::size_t>(geometry_.width) +
                     static_cast<std::size_t>(column)];
   }

@@ -53,6 +53,7 @@ std::vector<std::string> problems(const CoreConfig& config) {
     for (const std::uint32_t part : parts) banks.insert(registers::bank_of(part));
     if (banks.size() != parts.size()) found.emplace_back("stripes: the parts must lie in different banks");
   }
+  kResultDelayRule.check("result_delay_cycles", config.result_delay_cycles, found);
   kPipelineLatencyRule.check("pipeline_latency_cycles", config.pipeline_latency_cycles, found);
   if (!(config.clock_mhz >= 1 && config.clock_mhz <= 1000)) {
     found.push_back("clock_mhz = " + std::to_string(config.clock_mhz) + ": must be 1..1000");

@@ -47,6 +47,7 @@ inline constexpr kernels::IntegerRule kUnitsRule{1, 254};
 inline constexpr kernels::IntegerRule kRowsRule{1, 16};
 inline constexpr kernels::IntegerRule kLaneFifoRule{1, 64};
 inline constexpr kernels::IntegerRule kResultFifoRule{1, 64};
+inline constexpr kernels::IntegerRule kResultDelayRule{0, 64};
 inline constexpr kernels::IntegerRule kPipelineLatencyRule{0, 1024};
 inline constexpr kernels::IntegerRule kLanesRule{1, 16};
 inline constexpr kernels::IntegerRule kStripeRule{2, 16};  // parts
@@ -74,6 +75,7 @@ struct CoreConfig {
   double clock_mhz = 40;             // 1..1000
   int lane_fifo_slots = 16;          // slots, kLaneFifoRule
   int result_fifo_words = 8;         // 32-bit words, kResultFifoRule, at least `rows`
+  int result_delay_cycles = 0;       // Q: cycles, kResultDelayRule, before the result queue (contract 7.11)
   int pipeline_latency_cycles = 16;  // cycles, kPipelineLatencyRule, after the last write
 };
 

@@ -32,6 +32,7 @@ void CoreControl::skip_waiting(std::uint64_t cycles) {
   for (std::size_t port = 0; port < ports_.core_size(); ++port)
     cycles_[port].add(decision.intents[port], false, cycles);
   match_.skip_folds(cycles);
+  result_.skip_waiting(cycles);
 }
 
 CoreControl::Counts CoreControl::counts() const { return {cycles_.begin(), cycles_.end() - 1}; }
@@ -55,8 +56,9 @@ void CoreControl::set_state(memory::StateReader& state, std::uint64_t consumed, 
     lanes_[lane].set_state(
         *state++, geometry_.consumed_slots(number, after) - geometry_.consumed_slots(number, before));
   }
-  match_.set_state(*state & 0xffff'ffffU, consumed);
-  result_.set_state(*state++ >> kHalf, words);
+  const std::uint64_t of_both = *state++;
+  match_.set_state(of_both & 0xffff'ffffU, consumed);
+  result_.set_state(of_both >> kHalf, result_.delay() != 0 ? *state++ : 0, words);
 }
 
 std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, const Unknown& before) const {
@@ -65,9 +67,10 @@ std::uint64_t CoreControl::earliest_last_write(std::uint64_t cycle, const Unknow
   const std::uint64_t most_worked = std::min((before.consumed + 1) * folds - 1, before.cycles);
   const std::uint64_t to_write = result_.words_left() - before.words - 1;
   if (match_.cycles_left() <= most_worked) return cycle + to_write;
-  // The last words enter the queue together, in the last cycle of the matcher. One is written in each cycle
-  // after it.
-  const std::uint64_t works = match_.cycles_left() - most_worked;
+  // The last words enter the queue together, delay() cycles after the last cycle of the matcher. One is
+  // written in each cycle after that.
+  const std::uint64_t works =
+      match_.cycles_left() - most_worked + static_cast<std::uint64_t>(result_.delay());
   return cycle + std::max(works + static_cast<std::uint64_t>(geometry_.last_rows) - 1, to_write);
 }
 

@@ -53,7 +53,7 @@ class CoreControl {
   // The number of cycles, from the next one on, in which everything waits for the matcher: no port of the
   // core requests or passes, and the matcher works on a slot without consuming it.
   std::uint64_t waiting_cycles() const {
-    const std::uint64_t cycles = match_.cycles_to_consume();
+    const std::uint64_t cycles = std::min(match_.cycles_to_consume(), result_.cycles_to_arrival());
     if (cycles == 0 || !std::all_of(lanes_.begin(), lanes_.end(), std::mem_fn(&LaneControl::has_all)))
       return 0;
     const Decision decision = decide();
@@ -74,6 +74,7 @@ class CoreControl {
   void append_state(memory::StateWords& state) const {
     for (const LaneControl& lane : lanes_) state.push_back(lane.state());
     state.push_back(match_.state() | result_.state() << kHalf);
+    if (result_.delay() != 0) state.push_back(result_.arrivals());
   }
   // Skips cycles, after which the core is in `state`. In them `consumed` consume-cycles end, and `words`
   // words of results are written. The caller then calls set_marks().

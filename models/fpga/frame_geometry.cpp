@@ -26,7 +26,8 @@ FrameGeometry::FrameGeometry(const CoreConfig& config)
                            static_cast<std::uint64_t>(lead_strips) * columns_per_strip()),
       last_strip_column(result_delay_columns +
                         static_cast<std::uint64_t>((height - 1) / rows) * columns_per_strip()),
-      result_words(columns_per_strip() * static_cast<std::uint64_t>(height) / 4) {}
+      result_words(columns_per_strip() * static_cast<std::uint64_t>(height) / 4),
+      result_delay_cycles(config.result_delay_cycles) {}
 
 SlotCursor::SlotCursor(const FrameGeometry& geometry, int lane)
     : width_(geometry.width),

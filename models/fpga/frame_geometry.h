@@ -45,6 +45,7 @@ struct FrameGeometry {
   std::uint64_t result_delay_columns;
   std::uint64_t last_strip_column;  // the column with which the first results of the last strip leave
   std::uint64_t result_words;
+  int result_delay_cycles;  // Q: from the end of a word's consume-cycle to its entry into the queue
 
   // The row of the first slot of each column of a strip; may lie outside the image.
   int first_row_of(int strip) const { return first_row + strip * rows; }

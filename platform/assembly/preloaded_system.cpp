@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "models/fpga/access_pattern.h"
@@ -25,14 +26,12 @@ const BoardConfig& checked(const BoardConfig& board, const Tables& tables) {
   return board;
 }
 
-// Runs frames of the core without data. The tables must fit the board.
-void run_frames(fpga::FrameRun& core, const BoardConfig& board, const Tables& tables, std::uint64_t frames,
-                std::uint64_t stall_timeout_cycles, const KeepGoing& keep_going = {}) {
+constexpr std::uint64_t kFrameTimeoutCycles = std::uint64_t{1} << 26U;
+
+// Runs frames of the core without data.
+void run_frames(fpga::FrameRun& core, const BoardConfig& board, const fpga::AccessPatterns& patterns,
+                std::uint64_t frames, std::uint64_t stall_timeout_cycles, const KeepGoing& keep_going = {}) {
   const fpga::BufferBases buffers = buffer_bases(board);
-  const fpga::AccessPattern pattern(core.control().geometry(), board.fpga.pixel_cache);
-  fpga::AccessPatterns patterns{pattern, pattern};
-  if (tables.left) patterns[0].set_entries(tables.left->entries.data());
-  if (tables.right) patterns[1].set_entries(tables.right->entries.data());
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     core.start_direct(core.done_cycle(), buffers.of_frame(frame), patterns);
     while (!core.control().frame_done()) {
@@ -50,6 +49,13 @@ void run_frames(fpga::FrameRun& core, const BoardConfig& board, const Tables& ta
 
 memory::Arbitration arbitration_of(const BoardConfig& board) {
   return {arbiter_of_ports(board.fpga.arbiter, core_ports(board)), ssram_configs(board)};
+}
+
+std::vector<std::uint64_t> frame_cycles(const BoardConfig& board, const fpga::AccessPatterns& patterns,
+                                        std::uint64_t frames, memory::Arbitration arbitration) {
+  fpga::FrameRun core(core_config(board), ssram_configs(board), arbitration, kFrameTimeoutCycles);
+  run_frames(core, board, patterns, frames, kFrameTimeoutCycles);
+  return core.frame_cycles();
 }
 
 }  // namespace
@@ -75,20 +81,28 @@ Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_
   check_tables(board, tables);
   memory::Arbitration arbitration = arbitration_of(board);
   fpga::FrameRun core(core_config(board), ssram_configs(board), arbitration, stall_timeout_cycles);
-  run_frames(core, board, tables, frames, stall_timeout_cycles, keep_going);
-  return collect_statistics(board, frame_accesses(board, tables), "fast", core.frame_cycles(),
+  const fpga::AccessPatterns patterns = access_patterns(board, &tables);
+  run_frames(core, board, patterns, frames, stall_timeout_cycles, keep_going);
+  return collect_statistics(board, frame_accesses(board, patterns), "fast", core.frame_cycles(),
                             counters_of(core, arbitration));
+}
+
+std::vector<std::uint64_t> core_frame_cycles(const BoardConfig& board, const fpga::AccessPatterns& patterns,
+                                             std::uint64_t frames) {
+  return frame_cycles(board, patterns, frames, arbitration_of(board));
+}
+
+std::vector<std::uint64_t> waitless_frame_cycles(const BoardConfig& board,
+                                                 const fpga::AccessPatterns& patterns, std::uint64_t frames) {
+  memory::Arbitration arbitration = arbitration_of(board);
+  arbitration.grant_all_requests();
+  return frame_cycles(board, patterns, frames, std::move(arbitration));
 }
 
 std::vector<std::uint64_t> waitless_frame_cycles(const BoardConfig& board, const Tables& tables,
                                                  std::uint64_t frames) {
-  constexpr std::uint64_t kNoTimeout = std::uint64_t{1} << 26U;
   check_tables(board, tables);
-  memory::Arbitration arbitration = arbitration_of(board);
-  arbitration.grant_all_requests();
-  fpga::FrameRun core(core_config(board), ssram_configs(board), arbitration, kNoTimeout);
-  run_frames(core, board, tables, frames, kNoTimeout);
-  return core.frame_cycles();
+  return waitless_frame_cycles(board, access_patterns(board, &tables), frames);
 }
 
 }  // namespace stereotlm::platform

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/binder.h"
+#include "models/fpga/access_pattern.h"
 #include "models/host/ideal_host.h"
 #include "platform/assembly/board.h"
 #include "platform/config/board_config.h"
@@ -44,8 +45,13 @@ using KeepGoing = std::function<bool(std::uint64_t frames, std::uint64_t cycles)
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
                     const KeepGoing& keep_going = {},
                     std::uint64_t stall_timeout_cycles = std::uint64_t{1} << 26U);
-// The cycles of each frame if each request of a port were granted in its cycle. Throws std::invalid_argument
-// if the tables do not fit the board.
+// The lengths of the frames of run_core() alone, of tables with these access_patterns().
+std::vector<std::uint64_t> core_frame_cycles(const BoardConfig& board, const fpga::AccessPatterns& patterns,
+                                             std::uint64_t frames);
+// The same if each request of a port were granted in its cycle.
+std::vector<std::uint64_t> waitless_frame_cycles(const BoardConfig& board,
+                                                 const fpga::AccessPatterns& patterns, std::uint64_t frames);
+// The same. Throws std::invalid_argument if the tables do not fit the board.
 std::vector<std::uint64_t> waitless_frame_cycles(const BoardConfig& board, const Tables& tables,
                                                  std::uint64_t frames);
 

@@ -42,6 +42,7 @@ fpga::CoreConfig core_config(const BoardConfig& board) {
   core.clock_mhz = board.fpga.clock_mhz;
   core.lane_fifo_slots = board.fpga.lane_fifo_slots;
   core.result_fifo_words = board.fpga.result_fifo_words;
+  core.result_delay_cycles = board.fpga.result_delay_cycles;
   core.pipeline_latency_cycles = board.fpga.pipeline_latency_cycles;
   return core;
 }

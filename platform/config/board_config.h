@@ -75,6 +75,7 @@ struct FpgaConfig {
   memory::ArbiterConfig arbiter = fpga::core_arbiter();    // the port groups in the order of their priority
   int lane_fifo_slots = 16;                                // slots, 1..64
   int result_fifo_words = 8;                               // 32-bit words, 1..64, at least matcher.rows
+  int result_delay_cycles = 0;                             // cycles before the result queue, 0..64
   int pipeline_latency_cycles = 16;                        // cycles, 0..1024
   int lanes = 1;                                           // lanes on each side, 1..16
   bool joint_tables = false;                               // true: one table for both sides

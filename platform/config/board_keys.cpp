@@ -545,6 +545,10 @@ std::vector<Key> make_keys() {
           "lanes of each side, each fetches a pixel in a cycle; at most matcher.window + matcher.rows - 1, "
           "and 1 unless matcher.fetch is column; optional, without it 1",
           "lanes", rule_of(fpga::kLanesRule))),
+      optional(simple("fpga.result_delay_cycles", at(&B::fpga, &FpgaConfig::result_delay_cycles),
+                      "cycles for which a result word is on its way to the result queue, where its place is "
+                      "taken meanwhile; optional, without it 0",
+                      "cycles", rule_of(fpga::kResultDelayRule))),
       banks_key(Buffer::kLeftImage, "banks of the left input buffers, used in turn", image_rule),
       banks_key(Buffer::kRightImage, "banks of the right input buffers, used in turn", image_rule),
       banks_key(Buffer::kDisparity, "banks of the result buffers, used in turn", list_rule),

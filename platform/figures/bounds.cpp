@@ -169,6 +169,14 @@ class BankAccesses {
   // Adds one for each word of a buffer of 8-bit values.
   void add_reads(const fpga::Placement& buffer) { add_words(buffer, reads_); }
   void add_writes(const fpga::Placement& buffer) { add_words(buffer, writes_); }
+  std::vector<BankStatistics> statistics() const {
+    std::vector<BankStatistics> all(reads_.size());
+    for (std::size_t bank = 0; bank < all.size(); ++bank) {
+      all[bank].reads = reads_[bank];
+      all[bank].writes = writes_[bank];
+    }
+    return all;
+  }
   // The fewest cycles that a bank needs: with separate ports for the larger of the reads and the writes.
   std::uint64_t cycles(std::size_t bank) const {
     return memory::has_separate_ports(board_.banks[bank].kind) ? std::max(reads_[bank], writes_[bank])
@@ -267,12 +275,13 @@ std::uint64_t sdram_cycles(const memory::SdramTiming& timing, std::uint64_t acce
 }
 
 // The rows that the slots of a side read, how often, and the words.
-void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const fpga::AccessPattern& pattern,
+void count_rows(const BoardConfig& board, fpga::Side side, const fpga::AccessPattern& pattern,
                 FrameAccesses& accesses) {
   const fpga::CoreConfig core = core_config(board);
   const fpga::CorePorts ports(core);
   const auto height = static_cast<std::size_t>(core.height);
   accesses.reads_of_row.resize(ports.core_size(), std::vector<std::uint64_t>(height));
+  const bool is_identity = pattern.is_identity();
   const auto& of_table = pattern.table_accesses_of_rows();
   const auto& of_image = pattern.pixel_accesses_of_rows();
   auto& table_words = accesses.touched[fpga::lut_group(side)];
@@ -288,9 +297,9 @@ void count_rows(const BoardConfig& board, bool has_table, fpga::Side side, const
       for (int column = 0; column < core.width; ++column) {
         const auto at = static_cast<int>(row);
         if (!pattern.needs_pixel(column, at)) continue;
-        const std::uint32_t entry = has_table ? pattern.entry(column, at) : 0;
-        const auto source_row = has_table ? static_cast<std::size_t>(kernels::entry_row(entry)) : row;
-        const int source = has_table ? kernels::entry_column(entry) : column;
+        const std::uint32_t entry = is_identity ? 0 : pattern.entry(column, at);
+        const auto source_row = is_identity ? row : static_cast<std::size_t>(kernels::entry_row(entry));
+        const int source = is_identity ? column : kernels::entry_column(entry);
         image_words[source_row][static_cast<std::size_t>(source) / kernels::kPixelsPerWord] = true;
       }
     }
@@ -344,7 +353,15 @@ std::string local_bus_remark(const BoardConfig& board) {
       fpga, megabytes(local), local, megabytes(in_step), in_step);
 }
 
-FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
+fpga::AccessPatterns access_patterns(const BoardConfig& board, const Tables* tables) {
+  const fpga::AccessPattern pattern(fpga::FrameGeometry(core_config(board)), board.fpga.pixel_cache);
+  fpga::AccessPatterns patterns{pattern, pattern};
+  if (tables != nullptr && tables->left) patterns[0].set_entries(tables->left->entries.data());
+  if (tables != nullptr && tables->right) patterns[1].set_entries(tables->right->entries.data());
+  return patterns;
+}
+
+FrameAccesses frame_accesses(const BoardConfig& board, const fpga::AccessPatterns& patterns) {
   const fpga::CoreConfig core = core_config(board);
   const fpga::CorePorts ports(core);
   FrameAccesses accesses;
@@ -353,16 +370,14 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
       !core.stripes.empty() || std::any_of(board.banks.begin(), board.banks.end(),
                                            [](const BankConfig& bank) { return bank.sdram.has_value(); });
   for (const fpga::Side side : fpga::kSides) {
-    const auto& table = side == fpga::Side::kLeft ? tables.left : tables.right;
-    fpga::AccessPattern pattern(fpga::FrameGeometry(core), core.pixel_cache);
-    if (table) pattern.set_entries(table->entries.data());
+    const fpga::AccessPattern& pattern = patterns[fpga::index_of(side)];
     for (int lane = 0; lane < core.lanes; ++lane) {
       const auto number = static_cast<std::size_t>(lane);
-      if (table && has_group(core, fpga::lut_group(side)))  // joint tables: the left ones read for both sides
+      if (has_group(core, fpga::lut_group(side)))  // joint tables: the left ones read for both sides
         accesses.reads[ports.lut(side, number)] = pattern.table_accesses(lane);
       accesses.reads[ports.pixel(side, number)] = pattern.pixel_accesses(lane);
     }
-    if (needs_rows) count_rows(board, table.has_value(), side, pattern, accesses);
+    if (needs_rows) count_rows(board, side, pattern, accesses);
   }
   if (needs_rows) {
     const auto height = static_cast<std::size_t>(core.height);
@@ -370,6 +385,16 @@ FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
     accesses.touched[fpga::kResultGroup].assign(height, row);
   }
   return accesses;
+}
+
+std::vector<BankStatistics> accesses_of_banks(const BoardConfig& board, const FrameAccesses& accesses,
+                                              std::uint64_t frames) {
+  const fpga::CoreConfig core = core_config(board);
+  const fpga::BufferBases buffers = buffer_bases(board);
+  BankAccesses all(board);
+  for (std::uint64_t frame = 0; frame < frames; ++frame)
+    all.add_core(placements_of(core, buffers.of_frame(frame)), accesses);
+  return all.statistics();
 }
 
 std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAccesses& accesses,
@@ -387,7 +412,8 @@ std::vector<ResourceBound> frame_bounds(const BoardConfig& board, const FrameAcc
   const auto folds = static_cast<std::uint64_t>(geometry.folds);
   const auto places = static_cast<std::uint64_t>(board.fpga.lane_fifo_slots);
   const std::uint64_t after_last_slot =
-      geometry.drain_cycles * folds + static_cast<std::uint64_t>(geometry.last_rows) + pipeline;
+      geometry.drain_cycles * folds +
+      static_cast<std::uint64_t>(geometry.result_delay_cycles + geometry.last_rows) + pipeline;
 
   struct BankDemand {
     std::uint64_t reads = 0;

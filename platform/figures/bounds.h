@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/access_pattern.h"
 #include "models/fpga/core_ports.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
@@ -25,7 +26,18 @@ struct FrameAccesses {
   std::array<std::vector<std::vector<bool>>, fpga::kCoreGroupCount> touched;
 };
 
-FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables);  // of one frame
+// Which slots of a frame access their pixels. `tables`: null for the identity; else they fit the board, and
+// outlive the result.
+fpga::AccessPatterns access_patterns(const BoardConfig& board, const Tables* tables);
+
+FrameAccesses frame_accesses(const BoardConfig& board, const fpga::AccessPatterns& patterns);  // of one frame
+inline FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tables) {
+  return frame_accesses(board, access_patterns(board, &tables));
+}
+
+// The reads and writes that the core makes in each bank in frames 0..frames-1. The other members are 0.
+std::vector<BankStatistics> accesses_of_banks(const BoardConfig& board, const FrameAccesses& accesses,
+                                              std::uint64_t frames);
 
 // A lower bound for the length of a frame: the cycles that one resource of the core needs for it, pipeline
 // latency included.

@@ -166,7 +166,7 @@ struct CalibrateOptions : Options {
       const bool has_video = video.is_given();
       check_video(video, video_layout, problems);
       if (has_video && (has_sides || side_by_side.is_given() || synthetic.is_given()))
-        problems.add("--video: has all pictures: goes with no other pictures");
+        problems.add("--video: has both pictures of a pair: does not go with other pictures");
       if (synthetic.is_given() && (has_sides || side_by_side.is_given()))
         problems.add(
             "--synthetic: makes its own pictures: does not go with --left, --right and --side-by-side");

@@ -59,7 +59,7 @@ std::string quality_text(const calib::Quality& quality) {
   text += calibration_row("row error", rows_text(quality.row_error));
   text +=
       calibration_row("found again", quality.found_again.corners == 0
-                                         ? "none: no grid lies whole in both rectified pictures"
+                                         ? "nothing"
                                          : rows_text(quality.found_again) + ", in the rectified pictures");
   if (!quality.held_out) return text;
   return text +
@@ -75,8 +75,8 @@ std::string certainty_text(const calib::Certainty& its) {
                   "baseline, {:.3f} degrees of the turn; the grid is tilted by up to {:.0f} degrees",
                   its.focal_sigma_px, its.centre_sigma_px, its.baseline_sigma_mm, its.turn_sigma_deg,
                   its.tilt_deg));
-  if (its.lenses_are_kept)
-    text += calibration_row("lenses", "those of each camera alone: to fit all together would bend them");
+  if (its.has_fixed_intrinsics)
+    text += calibration_row("intrinsics", "those of each camera alone: a joint fit would bend the lenses");
   for (const calib::DepthError& each : its.depths) {
     text +=
         calibration_row(&each == its.depths.data() ? "depths" : "",

@@ -69,6 +69,7 @@ void add_bounds(Commands& commands);
 void add_explain(Commands& commands);
 void add_calibrate(Commands& commands);
 void add_allocate(Commands& commands);
+void add_optimise(Commands& commands);
 void add_sweep(Commands& commands);
 void add_merge(Commands& commands);
 void add_plot(Commands& commands);

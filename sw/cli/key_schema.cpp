@@ -188,6 +188,7 @@ Json board_schema() {
 Json plan_schema() {
   const Json text = {{"type", "string"}, {"minLength", 1}};
   const Json condition = {{"type", {"string", "number", "boolean"}}};
+  const Json texts = either(text, {{"type", "array"}, {"items", text}});
   const Json number = {{"type", "number"}};
   const Json range = {{"type", "object"},
                       {"properties", {{"from", number}, {"to", number}, {"step", number}}},
@@ -201,7 +202,7 @@ Json plan_schema() {
   Json varied = assignments(values);
   varied["properties"]["run.source"] = values(source);
   varied["properties"]["run.frames"] = values(frames);
-  Json schema = schema_head("Plan of a sweep of stereotlm", "plan");
+  Json schema = schema_head("Plan of a sweep or a search of stereotlm", "plan");
   schema.update({
       {"type", "object"},
       {"properties",
@@ -215,6 +216,14 @@ Json plan_schema() {
         {"vary", varied},
         {"zip", {{"type", "array"}, {"items", varied}}},
         {"where", either(condition, {{"type", "array"}, {"items", condition}})},
+        {"maximise", texts},
+        {"minimise", texts},
+        {"require", texts},
+        {"placements",
+         {{"type", "object"},
+          {"properties", {{"banks", integer_schema({1, 64})}, {"stripes", integer_schema({1, 16})}}},
+          {"required", {"banks"}},
+          {"additionalProperties", false}}},
         {"sample",
          {{"type", "object"},
           {"properties",

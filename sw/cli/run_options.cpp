@@ -204,6 +204,25 @@ const std::string* sent_content(const process::FileContents& sent, const std::st
   return nullptr;
 }
 
+std::optional<runs::CalibrationInput> calibration_of(explore::Plan& plan, const Option& option,
+                                                     const process::FileContents& sent) {
+  const std::string path = option.is_given() ? option.text() : plan.calibration();
+  if (path.empty()) return std::nullopt;
+  const std::string named = option.is_given()
+                                ? option.name()
+                                : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
+  process::Problems problems;
+  auto calibration = runs::load_calibration(path, nullptr, problems, named, sent);
+  if (calibration) {
+    const calib::Rig& rig = calibration->calibration->rig;
+    const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height,
+                                              platform::joint_tables_problem(calibration->tables));
+    if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
+  }
+  problems.check();
+  return calibration;
+}
+
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
   problems.attempt("", [&] {
@@ -421,7 +440,7 @@ runs::RunInput RunOptions::load() const {
   for (const std::string& note : opened.notes) process::say("note", note);
   if (input.calibration) say_what_is_not_seen(input);
   if (!input.timing_only)
-    process::attempt_or_refuse("", [&] { runs::say_how_rows_agree(input, opened.pairs->pair(0)); });
+    process::attempt_or_refuse("", [&] { runs::check_pair(input, opened.pairs->pair(0)); });
   input.pairs = input.timing_only ? runs::blank_pairs(input.board) : std::move(opened.pairs);
   return input;
 }

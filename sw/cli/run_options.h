@@ -9,6 +9,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "sw/cli/options.h"
+#include "sw/explore/plan/plan.h"
 #include "sw/process/client.h"
 #include "sw/process/problems.h"
 #include "sw/runs/run_input.h"
@@ -65,6 +66,11 @@ struct BoardOptions {
       of, "--calibration", "F",
       "Tables from the calibration of a rig, as written by stereotlm calibrate, in place of the identity");
 };
+
+// Loads the calibration that `option` or the plan names, and gives its tables to the plan. Returns nullopt if
+// neither names one. Throws Refused if the calibration cannot be loaded or fits no point.
+std::optional<runs::CalibrationInput> calibration_of(explore::Plan& plan, const Option& option,
+                                                     const process::FileContents& sent);
 
 // The options of a command that takes nothing but a board.
 struct BoardCommandOptions : Options {

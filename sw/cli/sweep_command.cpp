@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "calib/calibration.h"
 #include "platform/config/board_draft.h"
 #include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/slurm/slurm.h"
@@ -182,28 +182,6 @@ constexpr const char* kSweepFooter =
     "--launcher slurm submits a job array, a shard a task, and a last job that merges the shards into\n"
     "DB; it waits, and submits lost shards again. The machines share the file system of DB and of this\n"
     "program. A task uses the processors that its job has: --sbatch cpus-per-task=8.";
-
-// Loads the calibration that --calibration or the plan names, and gives its tables to the plan. Returns
-// nullopt if neither names one. Throws Refused if the calibration cannot be loaded or fits no point.
-std::optional<runs::CalibrationInput> calibration_of(const SweepCommandOptions& options,
-                                                     explore::Plan& plan) {
-  const bool is_option = !options.calibration.text().empty();
-  const std::string path = is_option ? options.calibration.text() : plan.calibration();
-  if (path.empty()) return std::nullopt;
-  const std::string named = is_option
-                                ? "--calibration"
-                                : fmt::format("{}: {}", plan.calibration_place(), explore::kCalibrationPath);
-  process::Problems problems;
-  auto calibration = runs::load_calibration(path, nullptr, problems, named, options.sent);
-  if (calibration) {
-    const calib::Rig& rig = calibration->calibration->rig;
-    const auto problem = plan.use_calibration(runs::sha256_of(calibration->tables), rig.width, rig.height,
-                                              platform::joint_tables_problem(calibration->tables));
-    if (problem) problems.add(fmt::format("{} '{}': {}", named, path, *problem));
-  }
-  problems.check();
-  return calibration;
-}
 
 std::string summary(const explore::SweepCounts& counts, const SweepCommandOptions& options) {
   std::string text = fmt::format("{}: {} points", options.plan.text(), counts.total);
@@ -390,7 +368,9 @@ int sweep(const SweepCommandOptions& options) {
                                  sent_content(options.sent, "board.yaml", board));
   });
   explore::Plan& plan = *loaded;
-  const auto calibration = calibration_of(options, plan);
+  if (!plan.wishes_place().empty())
+    process::refuse(plan.wishes_place() + ": of a search: stereotlm optimise takes this plan");
+  const auto calibration = calibration_of(plan, options.calibration, options.sent);
   const explore::SweepCounts counts = options.is_slurm() ? sweep_on_slurm(options, plan, calibration)
                                                          : sweep_here(options, plan, calibration);
   return report(counts, options);

@@ -42,7 +42,7 @@ std::optional<std::string> exchange_text(const RunInput& input, const host::Ster
 
 }  // namespace
 
-void say_how_rows_agree(const RunInput& input, const host::StereoPair& pair) {
+void check_pair(const RunInput& input, const host::StereoPair& pair) {
   const std::vector<std::uint8_t>& pixels = pair.left.pixels;
   const bool is_uniform =
       std::all_of(pixels.begin(), pixels.end(), [&](auto each) { return each == pixels[0]; });

@@ -8,7 +8,7 @@ namespace stereotlm::runs {
 // Prints a warning if both pictures are the same. With a calibration, prints how well the rows of the
 // rectified pictures match. A poor match gives a warning: the pictures may be exchanged or of another rig,
 // which the file of a calibration does not reveal.
-void say_how_rows_agree(const RunInput& input, const host::StereoPair& pair);
+void check_pair(const RunInput& input, const host::StereoPair& pair);
 
 // Prints a note if the pictures of a pair are surely exchanged, for a run without calibration. Takes about
 // 0.2 s at 640x480.

@@ -325,11 +325,34 @@ Schema keys_schema() {
   return document_of("What `stereotlm keys --json` prints", {{"keys", list_of(key, 1)}});
 }
 
+Schema optimise_schema() {
+  const Schema value = object_of({{"figure", text(), "the goal, as it was given"},
+                                  {"least", any_number()},
+                                  {"most", any_number(), "more than least only where a rate is uncertain"}});
+  const Schema point = object_of({
+      {"boards", from_one(), "Boards that have these values."},
+      {"values", list_of(value, 1)},
+      {"config", text(), "the first of these boards, as a board file"},
+      {"command", text(), "the command that explains it"},
+  });
+  return document_of("What `stereotlm optimise --json` prints",
+                     {
+                         {"state", one_of_words({"complete", "interrupted"}),
+                          "State of the search. interrupted: the front is that so far."},
+                         {"boards", count(), "Boards of the space."},
+                         {"combinations", from_one(), "Combinations of the values of the plan."},
+                         {"front", list_of(point),
+                          "The boards that no other board beats: none is at least as good in all goals and "
+                          "better in one."},
+                     });
+}
+
 const std::map<std::string, Schema (*)()>& schemas() {
   static const std::map<std::string, Schema (*)()> kSchemas = {
       {"allocate", allocate_schema}, {"boards", boards_schema},       {"bounds", bounds_schema},
       {"check", check_schema},       {"conflicts", conflicts_schema}, {"diff", diff_schema},
-      {"explain", explain_schema},   {"keys", keys_schema},           {"run", run_schema},
+      {"explain", explain_schema},   {"keys", keys_schema},           {"optimise", optimise_schema},
+      {"run", run_schema},
   };
   return kSchemas;
 }

@@ -130,6 +130,7 @@ platform::BoardConfig board_config(const PlainCycleInput& input) {
   board.fpga.lanes = input.lanes;
   board.fpga.lane_fifo_slots = input.lane_fifo_slots;
   board.fpga.result_fifo_words = input.result_fifo_words;
+  board.fpga.result_delay_cycles = input.result_delay_cycles;
   board.fpga.pipeline_latency_cycles = input.pipeline_latency_cycles;
   board.banks = bank_configs(input);
   board.allocation.left_image = banks_of(input.left_image);

@@ -394,38 +394,49 @@ class ResultQueue {
   ResultQueue(const PlainCycleInput& input, PlainParts disparity)
       : disparity_(std::move(disparity)),
         capacity_(input.result_fifo_words),
+        delay_(input.result_delay_cycles),
         words_of_frame_(input.width * input.height / 4),
         words_of_row_(input.width / 4),
         written_in_row_(static_cast<std::size_t>(input.height)) {}
 
+  // A word has its place from the consume-cycle that completes it to its write. No other consume-cycle begins
+  // before that one ends, so it is enough to take the place at its end.
   bool has_free_places(int places) const {
-    return static_cast<std::int64_t>(rows_of_words_.size()) + places <= capacity_;
+    return static_cast<std::int64_t>(words_.size()) + places <= capacity_;
   }
   bool all_written() const { return written_ == words_of_frame_; }
-  Request result_port_request() const {
-    if (rows_of_words_.empty()) return {written_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved};
-    const int row = rows_of_words_.front();
+  Request result_port_request(Cycle now) const {
+    if (words_.empty() || now <= words_.front().enters_at)
+      return {written_ == 0 || all_written() ? Wish::kIdle : Wish::kStarved};
+    const int row = words_.front().row;
     const std::int64_t word = written_in_row_[static_cast<std::size_t>(row)];
     return {Wish::kAccess,
             plain_word(disparity_, row, static_cast<int>(word), static_cast<int>(words_of_row_)),
             Direction::kWrite};
   }
-  void word_enters(int row) { rows_of_words_.push_back(row); }
+  // Its consume-cycle ends in cycle `now`.
+  void word_leaves_matcher(int row, Cycle now) { words_.push_back({row, now + delay_}); }
   // Returns its row if that is complete.
   std::optional<std::size_t> word_is_written() {
-    const auto row = static_cast<std::size_t>(rows_of_words_.front());
-    rows_of_words_.pop_front();
+    const auto row = static_cast<std::size_t>(words_.front().row);
+    words_.pop_front();
     ++written_;
     if (++written_in_row_[row] < words_of_row_) return std::nullopt;
     return row;
   }
 
  private:
+  struct Word {
+    int row;
+    Cycle enters_at;  // at the end of this cycle
+  };
+
   PlainParts disparity_;
   std::int64_t capacity_;
+  Cycle delay_;  // Q
   std::int64_t words_of_frame_;
   std::int64_t words_of_row_;
-  std::deque<int> rows_of_words_;  // row of each word in the queue
+  std::deque<Word> words_;  // in the queue, or on their way to it
   std::int64_t written_ = 0;
   std::vector<std::int64_t> written_in_row_;
 };
@@ -492,7 +503,7 @@ class PlainCore::Cycles {
           requests_[pixel_group(side, p)] = lane.pixel_port_request(now);
         }
       }
-      requests_[result_port()] = frame_->queue.result_port_request();
+      requests_[result_port()] = frame_->queue.result_port_request(now);
     }
     if (host) {
       requests_[host_port()] = {Wish::kAccess, host->at, host->write ? Direction::kWrite : Direction::kRead};
@@ -619,7 +630,7 @@ class PlainCore::Cycles {
         }
       }
       const std::vector<int> rows = frame.matcher.consume();
-      for (const int row : rows) frame.queue.word_enters(row);
+      for (const int row : rows) frame.queue.word_leaves_matcher(row, now);
       if (frame.tile == 0 ? frame.matcher.has_filled() : !rows.empty())
         frame.tile = std::min(frame.tile + 1, result_.tiles.size() - 1);
     }

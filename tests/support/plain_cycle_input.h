@@ -70,6 +70,7 @@ struct PlainCycleInput {
   int lanes = 1;  // P; more than 1 only with kColumn
   int lane_fifo_slots = 16;
   int result_fifo_words = 8;
+  int result_delay_cycles = 0;  // Q
   int pipeline_latency_cycles = 16;
   std::vector<PlainBank> banks;
   std::vector<PlainBuffer> left_image;

@@ -321,6 +321,10 @@ void draw_cost(RandomBoard& board, SplitMix64 random) {
   if (board.cost.kind == ReferenceCost::Kind::kCensus) board.cost.census_size = 2 * random.between(1, 3) + 1;
 }
 
+void draw_result_delay(RandomBoard& board, SplitMix64 random) {
+  if (random.chance(50)) board.result_delay_cycles = random.mostly_small(1, 20, 64);
+}
+
 PlainSdram random_sdram(SplitMix64& random) {
   PlainSdram sdram;
   sdram.cas_latency = random.mostly_small(1, 3, 8);
@@ -407,6 +411,7 @@ void draw_knobs(RandomBoard& board, const RandomKnobs& knobs) {
   if (knobs.stripes) draw_stripes(board, random_of(board, 9));
   if (knobs.lanes) draw_lanes(board, random_of(board, 10));
   if (knobs.energy) draw_energy(board, random_of(board, 11));
+  if (knobs.result_delay) draw_result_delay(board, random_of(board, 12));
 }
 
 }  // namespace

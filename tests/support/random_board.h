@@ -60,6 +60,7 @@ struct RandomKnobs {
   bool word_cache = false;
   bool qdr = false;
   bool cost = false;
+  bool result_delay = false;
   bool wide_pci = false;  // of computers: 64 bits
   // Of computers: captures contend with the frame, by a local bus in step with the core, and the accesses of
   // the frame are regular. The models have a faster way there; it is no knob of section 7.
@@ -73,7 +74,9 @@ struct RandomKnobs {
   bool energy = false;  // of section 9: banks with figures of their own, and another clock
 
   // Those of section 7.
-  static constexpr RandomKnobs all() { return {true, true, true, true, true, true, true, true, true, true}; }
+  static constexpr RandomKnobs all() {
+    return {true, true, true, true, true, true, true, true, true, true, true};
+  }
   // Those of sections 7 to 9: all that boards can have.
   static constexpr RandomKnobs with_section_8() {
     RandomKnobs knobs = all();

@@ -96,13 +96,24 @@ Plan::Combination Plan::combination(std::uint64_t number) const {
   return made;
 }
 
+Plan::ReadPoint Plan::read(std::uint64_t number) const {
+  Combination made = combination(number);
+  platform::BoardDraft::Reading reading = made.draft.read_with_problems();
+  return {std::move(made.draft), std::move(reading), std::move(made.run)};
+}
+
+std::vector<std::string> Plan::varied() const {
+  std::vector<std::string> paths;
+  for (const Axis& axis : axes_) paths.insert(paths.end(), axis.paths.begin(), axis.paths.end());
+  return paths;
+}
+
 Point Plan::point(std::uint64_t number) const {
-  const auto [draft, run] = combination(number);
-  const platform::BoardDraft::Reading reading = draft.read_with_problems();
+  const auto [draft, reading, run] = read(number);
   std::string rules;
   for (const Diagnostic& problem : reading.problems) rules += (rules.empty() ? "" : "; ") + problem.text;
   if (!rules.empty()) return impossible_point(number, draft.to_yaml(), reading.board, run, rules);
-  const auto problem = table_problem(reading.board, [](const char*) { return true; });
+  const auto problem = tables_problem(reading.board);
   if (!problem) return make_point(number, reading.board, run);
   return impossible_point(number, to_yaml(reading.board), reading.board, run,
                           fmt::format("{}: {}", kCalibrationPath, *problem));
@@ -148,11 +159,14 @@ class PlanReader {
       report(error.place, error.what());
       fail();
     }
-    if (is_map("", tree, {"board", "run", "set", "vary", "zip", "where", "sample"}, "a plan is a map")) {
+    const std::vector<std::string> keys = {"board",  "run",        "set",      "vary",     "zip",    "where",
+                                           "sample", "placements", "maximise", "minimise", "require"};
+    if (is_map("", tree, keys, "a plan is a map")) {
       read_base(tree);
       if (const auto* vary = tree.find("vary")) read_vary(vary->value);
       if (const auto* zip = tree.find("zip")) read_zip(zip->value);
       if (const auto* where = tree.find("where")) read_conditions(where->value);
+      read_wishes(tree);
       count_points();
       if (const auto* sample = tree.find("sample")) read_sample(sample->value);
     }
@@ -462,6 +476,45 @@ class PlanReader {
         report("where", item, fmt::format("not an SQL expression over keys: {}", error.what()));
       }
     }
+  }
+
+  void read_wishes(const YamlNode& tree) {
+    SearchWishes& wishes = plan_.wishes_;
+    for (const char* const name : {"maximise", "minimise", "require"}) {
+      const auto* const entry = tree.find(name);
+      if (entry == nullptr) continue;
+      plan_.wishes_place_ = fmt::format("{}: {}", place_text(entry->key.place), name);
+      const std::vector<YamlNode> single = {entry->value};
+      for (const YamlNode& item : entry->value.is_list() ? entry->value.items : single) {
+        if (!item.is_scalar() || item.text.empty()) {
+          report(name, item,
+                 "a figure (see stereotlm keys --figures), a key, or an SQL expression over them");
+          continue;
+        }
+        const Condition text = {item.text, place_text(item.place),
+                                fmt::format("{} = {}", name, short_text(item))};
+        if (name == std::string("require")) {
+          wishes.requirements.push_back(text);
+        } else {
+          wishes.goals.push_back({text, name == std::string("maximise")});
+        }
+      }
+    }
+    const auto* const placements = tree.find("placements");
+    if (placements == nullptr) return;
+    plan_.wishes_place_ = fmt::format("{}: placements", place_text(placements->key.place));
+    if (!is_map("placements", placements->value, {"banks", "stripes"}, "a map")) return;
+    const auto read = [&](const char* name, const platform::IntegerRule& rule, int& value) {
+      const YamlNode::Entry* const entry = placements->value.find(name);
+      if (entry == nullptr) return;
+      const std::int64_t number = platform::integer_of(entry->value).value_or(0);
+      if (!rule.allows(number)) report(fmt::format("placements.{}", name), entry->value, rule.text());
+      value = static_cast<int>(number);
+    };
+    read("banks", {1, 64}, wishes.most_banks);
+    read("stripes", {1, 16}, wishes.most_parts);
+    if (placements->value.find("banks") == nullptr)
+      report(placements->value.place, "placements.banks: missing: the most banks that a board may use");
   }
 
   // Reports the keys that are missing in the first point, because they are missing in all points.

@@ -28,6 +28,18 @@ struct PlanValues {
   platform::YamlNode at(std::uint64_t number) const;
 };
 
+// What a search is to find among the points of a plan. The figures and conditions are texts, not checked yet.
+struct SearchWishes {
+  struct Goal {
+    Condition figure;
+    bool is_maximum = false;  // false: a minimum
+  };
+  int most_banks = 0;  // in which buffers are placed; 0: each point has the placement of its board
+  int most_parts = 1;  // of a buffer that is placed
+  std::vector<Goal> goals;
+  std::vector<Condition> requirements;
+};
+
 // The plan of a sweep: a board, values for some of its keys, and the combinations of these values that are
 // points. Each point is made from its number, so that memory does not grow with the number of points.
 class Plan {
@@ -42,6 +54,27 @@ class Plan {
   std::uint64_t size() const { return sample_ ? sample_->points : product_; }
   // number: 0..size()-1. Each call reads and checks a board.
   Point point(std::uint64_t number) const;
+  // The board of a point as it is read, and its run. Rules that its placement breaks are among the problems.
+  struct ReadPoint {
+    platform::BoardDraft draft;
+    platform::BoardDraft::Reading reading;
+    PointRun run;
+  };
+  ReadPoint read(std::uint64_t number) const;
+  // The board that the plan names, with what it sets, before its keys vary; and the run.
+  const platform::BoardDraft& base() const { return *base_; }
+  const PointRun& run() const { return run_; }
+  const SearchWishes& wishes() const { return wishes_; }
+  // Where the plan has something that only a search takes; empty: nowhere.
+  const std::string& wishes_place() const { return wishes_place_; }
+  const std::vector<Condition>& conditions() const { return conditions_; }
+  // The keys whose values vary, in the order of the plan.
+  std::vector<std::string> varied() const;
+  // Why the board cannot have the tables of the calibration of the plan; nullopt if it can, or if the plan
+  // has none.
+  std::optional<std::string> tables_problem(const platform::BoardConfig& board) const {
+    return table_problem(board, [](const char*) { return true; });
+  }
   // The points as a sequence, which is valid as long as this plan.
   Points points() const {
     return {size(), [this](std::uint64_t number) { return point(number); }, conditions_};
@@ -109,6 +142,8 @@ class Plan {
   std::uint64_t product_ = 1;
   std::vector<Condition> conditions_;
   std::optional<Sample> sample_;
+  SearchWishes wishes_;
+  std::string wishes_place_;
 };
 
 // Shuffles the numbers 0..size-1 by a seed, and returns the one at `place`, 0..size-1. A Feistel network

@@ -39,9 +39,9 @@ const std::map<std::string, int>& parameters() {
 
 // The SQL tables for the values of a point: "(SELECT ?1 AS width, ..) AS image, ..". If `has_point` is false,
 // all values are NULL.
-std::string tables_text(bool has_point) {
+std::string tables_text(const std::map<std::string, int>& parameters, bool has_point) {
   std::map<std::string, std::string> columns;  // [table]
-  for (const auto& [name, number] : parameters()) {
+  for (const auto& [name, number] : parameters) {
     const std::size_t dot = name.find('.');
     std::string& list = columns[name.substr(0, dot)];
     list += fmt::format("{}{} AS \"{}\"", list.empty() ? "" : ", ",
@@ -68,16 +68,20 @@ std::set<std::string> allowed_functions(const sqlite::Database& database) {
 // Compiles each text twice. First without brackets, at the end of a statement, which refuses unbalanced
 // quotes and brackets; SQLite's message then quotes only the text. Then in brackets, which refuses a clause
 // behind the expression, such as LIMIT, and a comment that does not end.
-Conditions::Conditions(const std::vector<Condition>& conditions)
-    : database_("where", sqlite::Database::Access::kMemory), functions_(allowed_functions(database_)) {
+Conditions::Conditions(const std::vector<Condition>& conditions, const std::vector<std::string>& figures)
+    : database_("where", sqlite::Database::Access::kMemory),
+      parameters_(parameters()),
+      functions_(allowed_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
-  static const std::string kNoPoint = tables_text(false);
-  static const std::string kPoint = tables_text(true);
+  for (const std::string& figure : figures)
+    parameters_.emplace(figure, static_cast<int>(parameters_.size()) + 1);
+  const std::string no_point = tables_text(parameters_, false);
+  const std::string point = tables_text(parameters_, true);
   for (const Condition& condition : conditions) {
-    const auto alone = compile(fmt::format("SELECT 1 FROM {} WHERE {}", kNoPoint, condition.text));
+    const auto alone = compile(fmt::format("SELECT 1 FROM {} WHERE {}", no_point, condition.text));
     if (sqlite3_bind_parameter_count(alone->handle()) > 0)
       throw std::invalid_argument("parameters such as ? and :x have no value");
-    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, kPoint))});
+    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, point))});
   }
   sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
   const auto exceeds_steps = [](void* self) {
@@ -116,34 +120,50 @@ std::string Conditions::reason_of(const sqlite::DatabaseError& error) const {
       std::string(error.what()).substr(database_.path().size() + 2));  // without "where: "
 }
 
-bool Conditions::hold(const std::vector<BoardValue>& values) {
-  if (compiled_.empty()) return true;
+void Conditions::bind(const std::vector<BoardValue>& values) {
   for (const Compiled& compiled : compiled_) compiled.statement->clear_bindings();
-  const auto bind = [this](const std::string& name, const auto& value) {
-    const auto parameter = parameters().find(name);
-    if (parameter == parameters().end()) return;
+  const auto bind_one = [this](const std::string& name, const auto& value) {
+    const auto parameter = parameters_.find(name);
+    if (parameter == parameters_.end()) return;
     for (const Compiled& compiled : compiled_) compiled.statement->bind(parameter->second, value);
   };
   std::int64_t banks = 0;
   for (const BoardValue& value : values) {
     if (platform::schema_path(value.path) == "ssram.banks.NAME.words") ++banks;
-    bind(value.path == "name" ? "board.name" : value.path, value.value);
+    bind_one(value.path == "name" ? "board.name" : value.path, value.value);
   }
-  bind(kBankCount, banks);
-  for (const Compiled& compiled : compiled_) {
+  bind_one(kBankCount, banks);
+}
+
+template <typename Read>
+auto Conditions::computed(const Compiled& compiled, const Read& read) {
+  portions_ = 0;
+  try {
     sqlite::Statement& statement = *compiled.statement;
-    portions_ = 0;
-    try {
-      const bool is_true = statement.step() && statement.is_true(0);
-      statement.reset();
-      if (!is_true) return false;
-    } catch (const sqlite::DatabaseError& error) {
-      const std::string reason = reason_of(error);
-      throw ConditionError(
-          fmt::format("{}: {}: {}", compiled.condition.place, compiled.condition.name, reason), reason);
-    }
+    const auto value = read(statement);
+    statement.reset();
+    return value;
+  } catch (const sqlite::DatabaseError& error) {
+    const std::string reason = reason_of(error);
+    throw ConditionError(fmt::format("{}: {}: {}", compiled.condition.place, compiled.condition.name, reason),
+                         reason);
   }
-  return true;
+}
+
+bool Conditions::hold(const std::vector<BoardValue>& values) {
+  if (compiled_.empty()) return true;
+  bind(values);
+  return std::all_of(compiled_.begin(), compiled_.end(), [this](const Compiled& compiled) {
+    return computed(compiled, [](sqlite::Statement& row) { return row.step() && row.is_true(0); });
+  });
+}
+
+std::optional<double> Conditions::number(const std::vector<BoardValue>& values) {
+  bind(values);
+  return computed(compiled_.front(), [](sqlite::Statement& row) {
+    const bool is_null = !row.step() || sqlite3_column_type(row.handle(), 0) == SQLITE_NULL;
+    return is_null ? std::nullopt : std::optional<double>(row.real(0));
+  });
 }
 
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -101,11 +102,14 @@ class ConditionError : public std::runtime_error {
 // are limited. Must not be used across fork().
 class Conditions {
  public:
-  // Throws std::invalid_argument with the reason if a text is not such an expression.
-  explicit Conditions(const std::vector<Condition>& conditions);
+  // `figures`: further names that the texts may use, beside the keys. Throws std::invalid_argument with the
+  // reason if a text is not such an expression.
+  explicit Conditions(const std::vector<Condition>& conditions, const std::vector<std::string>& figures = {});
 
-  // Whether all conditions are true. Throws ConditionError.
+  // Whether all conditions are true. `values`: of keys, and of `figures`. Throws ConditionError.
   bool hold(const std::vector<platform::BoardValue>& values);
+  // The value of the first expression; nullopt: NULL. Throws ConditionError.
+  std::optional<double> number(const std::vector<platform::BoardValue>& values);
 
  private:
   struct Compiled {
@@ -118,10 +122,15 @@ class Conditions {
                        const char* database, const char* trigger);
   std::unique_ptr<sqlite::Statement> compile(const std::string& sql);
   std::string reason_of(const sqlite::DatabaseError& error) const;
+  void bind(const std::vector<platform::BoardValue>& values);
+  // Calls `read` with the row of the statement.
+  template <typename Read>
+  auto computed(const Compiled& compiled, const Read& read);
 
   sqlite::Database database_;
-  std::set<std::string> functions_;  // names of the functions that a text may call
-  std::string refusal_;              // the reason for which authorize() refused the text being compiled
+  std::map<std::string, int> parameters_;  // [name that a text may use]
+  std::set<std::string> functions_;        // names of the functions that a text may call
+  std::string refusal_;                    // the reason for which authorize() refused the text being compiled
   std::vector<Compiled> compiled_;
   int portions_ = 0;  // of the steps of this computation
 };

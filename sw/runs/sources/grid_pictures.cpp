@@ -92,10 +92,14 @@ std::vector<calib::PicturePair> load_grid_pictures(const std::vector<std::string
     for (const auto& [size, of_size] : names_of_size)
       sizes.push_back(
           fmt::format("{} of {}x{}, such as {}", of_size.size(), size.first, size.second, of_size.front()));
+    const auto [width, height] = names_of_size.begin()->first;
+    const char* const turn = width != height && names_of_size.count({height, width}) != 0
+                                 ? "turn those that lie on their side, or "
+                                 : "";
     problems.add(
-        fmt::format("pictures of several sizes: {}: must all have one size: take the others again with "
+        fmt::format("pictures of several sizes: {}: must all have one size: {}take the others again with "
                     "both cameras set to one size, or scale those that show the whole view of a camera",
-                    fmt::join(sizes, "; ")));
+                    fmt::join(sizes, "; "), turn));
   }
   if (converted > 0)
     process::say("note",

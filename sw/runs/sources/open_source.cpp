@@ -220,7 +220,7 @@ void open_pairs(InputPictures& pictures, OpenedSource& opened, process::Problems
 }
 
 // The pairs of `--video F [F2] --video-layout L`. Decodes each video once. Adds a note to `opened` for a
-// video with fewer frames than its header states. Without a board no pair may be requested.
+// video with fewer frames than its header states. Without a board, pairs have the size of the videos.
 void open_videos(const InputPictures& pictures, OpenedSource& opened) {
   const std::string& layout = pictures.video_layout;
   std::vector<std::shared_ptr<media::Video>> videos;

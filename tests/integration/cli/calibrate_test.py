@@ -100,7 +100,7 @@ class Made(CalibrateTest):
         for side in SIDES:
             table = (self.folder / f"video_{side}.lut").read_bytes()
             self.assertEqual((self.folder / f"both_{side}.lut").read_bytes(), table)
-        self.refused(run(*of_video, "--left", self.left), "--video: has all pictures")
+        self.refused(run(*of_video, "--left", self.left), "--video: has both pictures of a pair")
         odd = self.file("odd.pgm", pgm(1281, 2, bytes(1281 * 2)))
         self.refused(run(*beside, odd), f"--side-by-side '{odd}': 1281 pixels wide: must be even")
         same = self.file("same.pgm", pgm(8, 2, bytes(16)))
@@ -333,6 +333,8 @@ class RefusedPictures(CalibrateTest):
             ("left_*.png", "right_0[0-4].png", "9 left pictures", "5 right ones", "must be as many"),
             (sizes, "right_0[01].png", f"of several sizes: 1 of 32x24, such as --left '{sizes[1]}'; ",
              "3 of 640x480, such as ", "set to one size, or scale those that show the whole view"),
+            ([self.file("turned.pgm", pgm(480, 640, bytes(480 * 640)))], "right_00.png",
+             "must all have one size: turn those that lie on their side, or take the others again"),
             ([large], "right_00.png",
              f"--left '{large}': 2052x2052 pixels: a board's images with a look-up table are 4..2048"),
             ([text], "right_00.png", f"--left '{text}'", "not a picture"),

@@ -148,7 +148,7 @@ class Schemas(ProgramTest):
     def test_options(self):
         self.all_refused([(["keys", "--schema", "sweep"],
                            "--schema = sweep: must be board, plan, allocate, boards, bounds, check, "
-                           "conflicts, diff, explain, keys or run"),
+                           "conflicts, diff, explain, keys, optimise or run"),
                           (["keys", "--schema", "plan", "--json"], "--schema: does not go with --json")])
 
 

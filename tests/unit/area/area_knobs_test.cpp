@@ -94,6 +94,15 @@ TEST(RowsArea, KeepsCompleteWordsUntilTheQueueTakesThem) {
   EXPECT_EQ(item_of(core(kRows, 4), "result packer").count, 4);
 }
 
+// 8 bits for each row, and one for all of them.
+TEST(ResultDelayArea, DelaysTheDisparityOfEachRow) {
+  EXPECT_EQ(item_of(core(), "result delay").count, 0);
+  expect_all("result delay", {{core(kResultDelay, 1), {0, 8 + 1}},
+                              {core(kResultDelay, 16), {8 + 1}},
+                              {core(kResultDelay, 17, kRows, 4), {2 * (4 * 8 + 1)}}});
+  expect_all("result queue", {{core(kResultDelay, 64), all_of(core(), "result queue")}});
+}
+
 // The middle of the first window is 12 rows above the newest row, for any number of rows.
 TEST(RowsArea, KeepsTheValidBitsOfAsManyRowsAbove) {
   kernels::FilterKernel kernel{31, std::vector<int>(961, 0), 0};

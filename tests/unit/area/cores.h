@@ -27,6 +27,7 @@ inline constexpr auto kLeftTable = &CoreConfig::left_table;
 inline constexpr auto kRightTable = &CoreConfig::right_table;
 inline constexpr auto kLaneSlots = &CoreConfig::lane_fifo_slots;
 inline constexpr auto kResultWords = &CoreConfig::result_fifo_words;
+inline constexpr auto kResultDelay = &CoreConfig::result_delay_cycles;
 inline constexpr auto kUnits = &CoreConfig::units;
 inline constexpr auto kRows = &CoreConfig::rows;
 inline constexpr auto kLanes = &CoreConfig::lanes;

@@ -189,6 +189,11 @@ TEST(DisparityOffset, CentresTheGridsDisparities) {
 
 TEST(DisparityOffset, IsNotBelowZeroUnlessItMustBe) {
   EXPECT_EQ(disparity_offset_for({3.5, 20}, 80), 0);
+  EXPECT_EQ(disparity_offset_for({-3, 250}, 254), -3);
+  EXPECT_THAT(test::message_of([] {
+                disparity_offset_for({-3, 251}, 254);
+              }),
+              testing::HasSubstr("the grid's disparities are -3..251, and a board has 254 at most"));
   EXPECT_EQ(disparity_offset_for({-3.5, 20}, 80), -4);
 }
 

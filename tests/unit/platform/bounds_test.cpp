@@ -298,6 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"passes_line_buffer",
              [](auto& b) { b.matcher.units = 2, b.matcher.fetch = fpga::Fetch::kLineBuffer; }},
         Case{"no_pipeline", [](auto& b) { b.fpga.pipeline_latency_cycles = 0; }},
+        Case{"result_delay", [](auto& b) { b.fpga.result_delay_cycles = 20; }},
         Case{"one_place", [](auto& b) { b.fpga.lane_fifo_slots = 1; }},
         Case{"five_places", [](auto& b) { b.fpga.lane_fifo_slots = 5; }}),
     name_of);

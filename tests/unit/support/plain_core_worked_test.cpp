@@ -98,6 +98,28 @@ std::vector<WorkedBoard> small_boards() {
   };
 }
 
+// All buffers in one bank.
+PlainCycleInput delayed(const PlainBank& bank, int delay, const Change& change) {
+  return small(16, 13, 3, {bank}, [&](auto& b) {
+    b.left_image = b.right_image = b.disparity = {0}, b.left_lut = b.right_lut = 0;
+    b.lane_fifo_slots = 3, b.arbitration = PlainArbitration::kRoundRobin;
+    b.result_delay_cycles = delay;
+    change(b);
+  });
+}
+
+// Contract 7.11.
+std::vector<WorkedBoard> delayed_boards() {
+  const auto fold = [](auto& b) { b.result_fifo_words = 1, b.units = 3, b.fetch = PlainFetch::kLineBuffer; };
+  return {
+      {"Folds", delayed(kQdr, 5, fold), {1056, 1056}},
+      {"FewerRows",
+       delayed(kSyncBurst2, 17, [](auto& b) { b.result_fifo_words = 5, b.rows = 4; }),
+       {1541, 1541}},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(ResultDelay, PlainCoreWorked, testing::ValuesIn(delayed_boards()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Section8, PlainCoreWorked, testing::ValuesIn(small_boards()), name_of_case);
 
 }  // namespace

@@ -39,6 +39,7 @@ TEST(BoardArea, ChangesOnlyWithTheKeysThatChangeTheStructure) {
   EXPECT_NE(slices_after([](BoardConfig& b) { b.matcher.lr_tolerance.reset(); }), slices);
   EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.lane_fifo_slots = 17; }), slices);
   EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.result_fifo_words = 17; }), slices);
+  EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.result_delay_cycles = 1; }), slices);
   EXPECT_NE(slices_after([](BoardConfig& b) { b.allocation.left_lut.reset(); }), slices);
   EXPECT_EQ(slices_after([](BoardConfig& b) { b.allocation.left_lut = "bank0"; }), slices);
   EXPECT_EQ(slices_after([](BoardConfig& b) { b.fpga.clock_mhz = 100; }), slices);

@@ -188,6 +188,7 @@ std::vector<KeyCase> key_cases() {
        {"line", "off", "null", "[word]", "1", "None"},
        "none or word"},
       lanes,
+      integer_case("fpga.result_delay_cycles", 0, 64),
       {"allocation.left_image",
        {"[bank0, bank1]", "[bank7, bank7]", "['bank0', bank2]"},
        {"[]", "[bank0, bank1, bank2, bank3]", "null", "{bank0: bank1}"},

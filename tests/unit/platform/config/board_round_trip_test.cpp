@@ -121,6 +121,7 @@ BoardConfig any_board() {
   }
   board.fpga.lane_fifo_slots = any_int(1, 64);
   board.fpga.result_fifo_words = any_int(1, 64);
+  board.fpga.result_delay_cycles = any_int(0, 64);
   board.fpga.pipeline_latency_cycles = any_int(0, 1024);
   board.banks = any_banks();
   const auto any_bank = [&board] {
@@ -192,21 +193,23 @@ TEST(BoardRoundTrip, WritesALoadInFullAndNoneNotAtAll) {
 
 TEST(BoardRoundTrip, WritesOptionalKeysOnlyWhereTheyHaveAnEffect) {
   const std::string usual = to_yaml(load_board("fpl2003"));
-  for (const char* const name : {"package", "tables", "pixel_cache", "lanes", "units", "rows", "cost"})
+  for (const char* const name :
+       {"package", "tables", "pixel_cache", "lanes", "result_delay_cycles", "units", "rows", "cost"})
     EXPECT_EQ(usual.find(std::string("  ") + name + ":"), std::string::npos) << name;
   EXPECT_EQ(to_yaml(load_board("fpl2003", {"fpga.tables=separate", "fpga.pixel_cache=none", "fpga.lanes=1",
-                                           "matcher.units=all", "matcher.rows=1", "matcher.cost=sad"})),
+                                           "fpga.result_delay_cycles=0", "matcher.units=all",
+                                           "matcher.rows=1", "matcher.cost=sad"})),
             usual);
   EXPECT_NE(
       to_yaml(load_board("fpl2003", {"fpga.package=ff1517"})).find("  device: xc2v6000\n  package: ff1517\n"),
       std::string::npos);
-  const std::string text = to_yaml(load_board(
-      "fpl2003",
-      {"fpga.tables=joint", "allocation.right_lut=bank6", "fpga.pixel_cache=word", "fpga.lanes=4",
-       "ssram.banks.bank6.words=614400", "matcher.units=40", "matcher.rows=4", "matcher.cost={census: 5}"}));
-  EXPECT_NE(
-      text.find("  pipeline_latency_cycles: 16\n  tables: joint\n  pixel_cache: word\n  lanes: 4\nssram:"),
-      std::string::npos);
+  const std::string text = to_yaml(
+      load_board("fpl2003", {"fpga.tables=joint", "allocation.right_lut=bank6", "fpga.pixel_cache=word",
+                             "fpga.lanes=4", "fpga.result_delay_cycles=16", "ssram.banks.bank6.words=614400",
+                             "matcher.units=40", "matcher.rows=4", "matcher.cost={census: 5}"}));
+  EXPECT_NE(text.find("  pipeline_latency_cycles: 16\n  tables: joint\n  pixel_cache: word\n  lanes: 4\n  "
+                      "result_delay_cycles: 16\nssram:"),
+            std::string::npos);
   EXPECT_NE(text.find("  lr_tolerance: 0\n  units: 40\n  rows: 4\n  cost: {census: 5}\n"), std::string::npos);
   EXPECT_NE(to_yaml(load_board("fpl2003", {"matcher.cost=zncc"})).find("  cost: zncc\n"), std::string::npos);
 }

@@ -62,6 +62,8 @@ TEST(KnobSteps, GoFromTheValueOfTheBoardToItsValidNeighbours) {
       {"bridge.local_clock_mhz", {}, "40 -> 80; 40 -> 41; 40 -> 39; "},
       {"bridge.local_clock_mhz", {"bridge.local_clock_mhz=43"}, "43 -> 80; 43 -> 44; 43 -> 42; 43 -> 40; "},
       {"bridge.local_clock_mhz", {"bridge.local_clock_mhz=20"}, "20 -> 80; 20 -> 40; 20 -> 21; 20 -> 19; "},
+      {"fpga.result_delay_cycles", {}, "0 -> 1; "},
+      {"fpga.result_delay_cycles", {"fpga.result_delay_cycles=16"}, "16 -> 17; 16 -> 15; "},
       {"matcher.window", {}, "7 -> 9; 7 -> 5; "},
       {"capture.fifo_trigger_words", {"capture.fifo_words=32"}, "32 -> 31; "},
       {"pci.width_bits", {}, "32 -> 64; "},

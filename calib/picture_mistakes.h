@@ -21,7 +21,7 @@ struct GridViews {
 };
 
 // A mistake that explains why the pictures of a pair do not belong together, and how to mend it.
-struct Misarrangement {
+struct PictureMistake {
   std::string cause;      // "the pictures of one camera are mirrored"
   std::string cure;       // "mirror them, left to right"
   double rig_rms_px = 0;  // Evidence::rig_rms_px without the mistake
@@ -30,6 +30,6 @@ struct Misarrangement {
 // Undoes, one at a time, what people do wrong: pictures of a camera that are turned by 90 or 180 degrees or
 // mirrored, names that are shifted by up to three, names in reverse order. A mistake is named only if the rig
 // fits without it. The pairs do not fit as they are; the cameras of `rig` are about right.
-std::optional<Misarrangement> find_misarrangement(const GridViews& views, const Rig& rig);
+std::optional<PictureMistake> find_picture_mistake(const GridViews& views, const Rig& rig);
 
 }  // namespace stereotlm::calib

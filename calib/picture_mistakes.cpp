@@ -1,4 +1,4 @@
-#include "calib/arrangement.h"
+#include "calib/picture_mistakes.h"
 
 #include <fmt/format.h>
 
@@ -60,12 +60,12 @@ std::optional<RigFit> fit_with(const GridViews& views, const Rig& guess, const R
 
 }  // namespace
 
-std::optional<Misarrangement> find_misarrangement(const GridViews& views, const Rig& rig) {
+std::optional<PictureMistake> find_picture_mistake(const GridViews& views, const Rig& rig) {
   constexpr double kFits = 2;
   const Eigen::Matrix2d quarter{{0, -1}, {1, 0}};
   const RightOf as_is = turned(views.shape, Eigen::Matrix2d::Identity());
   const auto same = [](std::size_t picture) { return picture; };
-  std::optional<Misarrangement> best;
+  std::optional<PictureMistake> best;
   double least = kFits;
   Rig guess = rig;
   double roll = 0;  // of the best fit: by how much one camera is turned about its axis, degrees
@@ -74,7 +74,7 @@ std::optional<Misarrangement> find_misarrangement(const GridViews& views, const 
     const auto fit = fit_with(views, guess, right_of, partner);
     if (!fit || !(fit->evidence.ratio() < least)) return;
     least = fit->evidence.ratio();
-    best = Misarrangement{cause, cure, fit->evidence.rig_rms_px};
+    best = PictureMistake{cause, cure, fit->evidence.rig_rms_px};
     roll = fit->rig.roll_deg();
   };
   for (const Eigen::Matrix2d& turn :
@@ -89,13 +89,15 @@ std::optional<Misarrangement> find_misarrangement(const GridViews& views, const 
   }
   for (const std::size_t shift : {1U, 2U, 3U}) {
     const char* const cause = "the pictures are paired wrongly";
-    const char* const cure = "leave out the first {} of the {} pictures, and as many {} ones at the end";
+    const char* const cure =
+        "leave out {0} {1} picture{3} at the beginning, and {0} {2} picture{3} at the end";
+    const char* const plural = shift == 1 ? "" : "s";
     attempt(
         as_is, [shift](std::size_t picture) { return picture + shift; }, cause,
-        fmt::format(fmt::runtime(cure), shift, "right", "left"));
+        fmt::format(fmt::runtime(cure), shift, "right", "left", plural));
     attempt(
         as_is, [shift](std::size_t picture) { return picture - shift; }, cause,
-        fmt::format(fmt::runtime(cure), shift, "left", "right"));
+        fmt::format(fmt::runtime(cure), shift, "left", "right", plural));
   }
   attempt(
       as_is, [&views](std::size_t picture) { return views.pictures - 1 - picture; },

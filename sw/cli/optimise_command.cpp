@@ -1,0 +1,474 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "platform/config/board_draft.h"
+#include "platform/config/board_keys.h"
+#include "platform/config/board_yaml.h"
+#include "platform/config/buffer_layout.h"
+#include "platform/yaml/yaml_tree.h"
+#include "sw/cli/command.h"
+#include "sw/cli/run_options.h"
+#include "sw/explore/optimise/key_effects.h"
+#include "sw/explore/optimise/search.h"
+#include "sw/explore/optimise/search_store.h"
+#include "sw/explore/plan/plan.h"
+#include "sw/files/text_forms.h"
+#include "sw/runs/progress.h"
+#include "sw/runs/simulation/board_model.h"
+#include "sw/runs/sources/calibration_input.h"
+
+namespace stereotlm::cli {
+namespace {
+
+using explore::Search;
+using platform::BoardConfig;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostPoints = 40;  // of the front that the text lists
+
+// "90s", "5min", "2h": seconds; nullopt for any other text.
+std::optional<double> seconds_of(const std::string& text) {
+  static const std::regex kForm(R"((\d+(?:\.\d+)?)(s|min|h))");
+  std::smatch parts;
+  if (!std::regex_match(text, parts, kForm)) return std::nullopt;
+  return std::stod(parts[1]) * (parts[2] == "s" ? 1 : parts[2] == "min" ? 60 : 3600);
+}
+
+struct OptimiseOptions : Options {
+  using Options::Options;
+
+  process::FileContents sent = process::sent_files({"plan.yaml"});
+  Option plan = Option(this, "PLAN", " ", "A plan as sweep takes it, a preset, or a board file",
+                       {required("a plan or a board")});
+  Option sets = Option(this, "--set", "KEY=VALUE",
+                       "Give a key of the board another value, a YAML flow value; again for further keys", {},
+                       Takes::kRepeated);
+  Option requirements = Option(this, "--for", "CONDITION",
+                               "What a board must keep, such as 'frames_per_second.core >= 60'; again for "
+                               "further conditions",
+                               {}, Takes::kRepeated);
+  Option maxima = Option(this, "--maximise", "FIGURE",
+                         "A figure, a key or an SQL expression over them, that is to be large; again for "
+                         "further goals",
+                         {}, Takes::kRepeated);
+  Option minima = Option(this, "--minimise", "FIGURE", "The same, that is to be small", {}, Takes::kRepeated);
+  Option banks = Option(this, "--banks", "N", "Place the buffers in at most N banks, in every different way",
+                        {number<int>("1..64", [](int n) { return n >= 1 && n <= 64; })});
+  Option stripes =
+      Option(this, "--stripes", "M", "Each buffer in one bank, or striped over up to M",
+             {number<int>("1..16", [](int n) { return n >= 1 && n <= 16; }), goes_with(banks, "N")});
+  Option source = Option(this, "--source", "camera|preloaded",
+                         "The whole computer, or the core alone, the default; a plan says it in run.source",
+                         {one_of({"camera", "preloaded"})});
+  Option calibration = Option(this, "--calibration", "F", "The tables, in place of the identity");
+  Option why = Option(this, "--why", "KEY=VALUE",
+                      "Say why the board of the plan with this value is not the best; again for further keys",
+                      {}, Takes::kRepeated);
+  Option within = Option(this, "--within", "TIME", "End after 90s, 5min or 2h with the best so far",
+                         {valid("a time such as 90s, 5min or 2h",
+                                [](const std::string& text) { return seconds_of(text).has_value(); })});
+  Option out = Option(this, "--out", "DB",
+                      "The database of the answer and its certificate, written or continued (default: none)");
+  Option jobs = Option(this, "--jobs", "N", "Worker processes; default: the processors of this machine",
+                       {number<unsigned>("1..1024", [](unsigned n) { return n >= 1 && n <= 1024; })});
+  JsonOption json{this};
+
+  void check_together(process::Problems& problems) override {
+    if (why.is_given() && json.is_given()) problems.add("--why: does not go with --json");
+  }
+};
+
+// What the command is to find: a plan, and the goals and conditions of plan and options.
+struct Question {
+  std::optional<explore::Plan> plan;
+  explore::SearchWishes wishes;
+  std::string text;         // of the plan; of a board the plan that is made from it
+  std::string board_words;  // the board, as words of a command line
+};
+
+// Whether the file is a plan: a map with a key that only plans have. A file that cannot be read as YAML is
+// taken for a board, which reports why.
+bool is_plan(const std::string& name, const std::string* text) {
+  if (!platform::is_board_file(name)) return false;
+  try {
+    const platform::YamlNode tree = platform::parse_yaml(
+        text != nullptr ? *text : platform::read_text_file(name, "plan"), platform::Place::kBoard);
+    constexpr std::array kKeys = {"board", "vary", "zip", "placements", "maximise", "minimise", "require"};
+    return tree.is_map() && std::any_of(kKeys.begin(), kKeys.end(),
+                                        [&](const char* key) { return tree.find(key) != nullptr; });
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+// A plan that varies the usual knobs of a board: those with which the paper's board and its relatives differ.
+std::string plan_of_board(const std::string& name, const BoardConfig& board, const OptimiseOptions& options) {
+  std::string text = fmt::format("board: {}\nrun: {{source: {}}}\n", files::shell_word(name),
+                                 options.source.is_given() ? options.source.text() : "preloaded");
+  const int disparities = board.matcher.disparities;
+  text += "vary:\n";
+  text += fmt::format("  matcher.units: [all, {}, {}]\n", (disparities + 1) / 2, (disparities + 3) / 4);
+  text += "  matcher.rows: [1, 2, 4]\n  fpga.lanes: [1, 2, 4]\n  matcher.fetch: [column, line_buffer]\n";
+  text += "  fpga.pixel_cache: [none, word]\n  fpga.lane_fifo_slots: [4, 8, 16]\n";
+  if (board.allocation.left_lut && board.allocation.right_lut) text += "  fpga.tables: [separate, joint]\n";
+  text += fmt::format("placements: {{banks: {}}}\n",
+                      options.banks.is_given() ? options.banks.text() : std::to_string(board.banks.size()));
+  return text;
+}
+
+Question question_of(const OptimiseOptions& options) {
+  Question question;
+  const std::string& name = options.plan.text();
+  const std::string* const sent = sent_content(options.sent, "plan.yaml", name);
+  const bool has_plan = is_plan(name, sent);
+  if (has_plan && options.sets.is_given()) process::refuse("--set: of a board; a plan has the section set");
+  if (has_plan && options.source.is_given())
+    process::refuse("--source: of a board; a plan says it in run.source");
+  process::attempt_or_refuse("", [&] {
+    if (has_plan) {
+      question.text = sent != nullptr ? *sent : platform::read_text_file(name, "plan");
+      question.plan = explore::Plan::load(name, "", &question.text);
+      question.board_words = files::shell_word(question.plan->board());
+    } else {
+      const BoardConfig board = platform::load_board(name, options.sets.texts());
+      question.text = plan_of_board(name, board, options);
+      const std::string file = platform::to_yaml(board);
+      question.plan = explore::Plan::load(name, "board.yaml", &question.text, &file);
+      question.text += file;
+      question.board_words = files::shell_word(name);
+      for (const std::string& set : options.sets.texts())
+        question.board_words += " --set " + files::shell_word(set);
+    }
+  });
+  question.wishes = question.plan->wishes();
+  const auto add = [](const Option& option, const auto& take) {
+    for (const std::string& text : option.texts()) take(explore::Condition{text, option.name(), text});
+  };
+  explore::SearchWishes& wishes = question.wishes;
+  add(options.maxima, [&](const auto& text) { wishes.goals.push_back({text, true}); });
+  add(options.minima, [&](const auto& text) { wishes.goals.push_back({text, false}); });
+  add(options.requirements, [&](const auto& text) { wishes.requirements.push_back(text); });
+  if (const auto banks = options.banks.number<int>()) wishes.most_banks = *banks;
+  if (const auto parts = options.stripes.number<int>()) wishes.most_parts = *parts;
+  return question;
+}
+
+explore::SearchStore::Asked asked_of(const Question& question, const std::string& tables) {
+  explore::SearchStore::Asked asked = {{"version", process::kVersion},
+                                       {"plan", question.text},
+                                       {"board", question.plan->board_text()},
+                                       {"tables", tables}};
+  std::string goals;
+  for (const auto& goal : question.wishes.goals)
+    goals += fmt::format("{} {}\n", goal.is_maximum ? "maximise" : "minimise", goal.figure.text);
+  for (const auto& one : question.wishes.requirements) goals += fmt::format("require {}\n", one.text);
+  goals += fmt::format("placements {} {}\n", question.wishes.most_banks, question.wishes.most_parts);
+  asked.emplace("goals", goals);
+  return asked;
+}
+
+std::string progress_text(const explore::SearchState& state, double seconds) {
+  std::string text = fmt::format("{:.3g} boards: {} open, {} simulated", static_cast<double>(state.boards),
+                                 state.open, state.simulated);
+  if (state.has_best)
+    text += fmt::format(", best {:.6g}, bound {:.6g}, gap {:.2f} %", state.best, state.bound,
+                        state.best == 0 ? 0 : 100 * std::abs(state.bound / state.best - 1));
+  return text + fmt::format(", {:.0f} s", seconds);
+}
+
+std::string value_text(const explore::Range& value) {
+  const auto short_number = [](double number) {
+    return number == std::floor(number) && std::abs(number) < 1e15 ? fmt::format("{:.0f}", number)
+                                                                   : fmt::format("{:.3f}", number);
+  };
+  if (value.is_exact()) return short_number(value.least);
+  return fmt::format("{:.3f} ± {:.3f}", (value.least + value.most) / 2, (value.most - value.least) / 2);
+}
+
+std::string key_value(const BoardConfig& board, const std::string& path) {
+  const platform::Key* const key = platform::find_key(path);
+  if (key != nullptr && platform::has_value(*key))
+    return platform::value_text(platform::value_of(*key, board));
+  for (const platform::BoardValue& value : platform::values_of(board)) {
+    if (value.path == path) return platform::value_text(value.value);
+  }
+  // ssram.default: of the first bank.
+  for (const platform::BoardValue& value : platform::values_of(board)) {
+    const std::string of_default = "ssram.default.";
+    if (path.rfind(of_default, 0) == 0 &&
+        value.path ==
+            fmt::format("ssram.banks.{}.{}", board.banks.front().name, path.substr(of_default.size())))
+      return platform::value_text(value.value);
+  }
+  return "";
+}
+
+// The front as a table: goals, number of boards, and the keys that differ, of the first board of each.
+std::string front_text(Search& search, const explore::Plan& plan) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const auto& goal : search.wishes().goals) rows[0].push_back(goal.figure.text);
+  rows[0].emplace_back("boards");
+  const auto& front = search.front();
+  const std::size_t listed = std::min(front.size(), kMostPoints);
+  std::vector<BoardConfig> boards;
+  for (std::size_t i = 0; i < listed; ++i) boards.push_back(*search.board(front[i].first.front()).board);
+  std::string same;
+  std::vector<std::string> varied;
+  for (const std::string& path : plan.varied()) {
+    const std::string first = key_value(boards.front(), path);
+    const bool is_same = std::all_of(boards.begin(), boards.end(), [&](const BoardConfig& board) {
+      return key_value(board, path) == first;
+    });
+    if (is_same) {
+      same += fmt::format("{}{}: {}", same.empty() ? "" : ", ", path, first);
+    } else {
+      varied.push_back(path);
+      rows[0].push_back(path);
+    }
+  }
+  if (search.wishes().most_banks > 0) rows[0].emplace_back("banks");
+  for (std::size_t i = 0; i < listed; ++i) {
+    std::vector<std::string>& row = rows.emplace_back();
+    for (const explore::Range& value : front[i].values) row.push_back(value_text(value));
+    row.push_back(std::to_string(front[i].boards));
+    for (const std::string& path : varied) row.push_back(key_value(boards[i], path));
+    const std::vector<bool> used = platform::used_banks(boards[i]);
+    if (search.wishes().most_banks > 0)
+      row.push_back(std::to_string(std::count(used.begin(), used.end(), true)));
+  }
+  std::vector<std::size_t> widths(rows[0].size());
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += fmt::format("{}{:>{}}", i == 0 ? "" : "  ", row[i], widths[i]);
+    text += line + '\n';
+  }
+  if (front.size() > listed) text += fmt::format("and {} more\n", front.size() - listed);
+  if (!same.empty()) text += paragraph("the same on all: ", 2, same);
+  return text;
+}
+
+// The command that explains a board further.
+std::string command_of(const Question& question, const BoardConfig& board, const explore::PointRun& run) {
+  const BoardConfig base = question.plan->base().read();
+  std::string command = "stereotlm explain " + question.board_words;
+  if (!run.camera) command += " --source preloaded";
+  for (const std::string& set : platform::sets_between(base, board))
+    command += " --set " + files::shell_word(set);
+  return command;
+}
+
+// Which requirement no board meets, and what the nearest board has.
+std::string empty_text(const Question& question, const explore::BoardModel& model, unsigned processes) {
+  static const std::regex kForm(R"(\s*([A-Za-z_][\w.]*)\s*(<=|>=|<|>)\s*(-?[\d.]+)\s*)");
+  std::string text;
+  for (const bool alone : {true, false}) {
+    for (std::size_t i = 0; i < question.wishes.requirements.size(); ++i) {
+      const std::string& condition = question.wishes.requirements[i].text;
+      std::smatch parts;
+      if (!std::regex_match(condition, parts, kForm)) continue;
+      explore::SearchWishes wishes = question.wishes;
+      const bool is_maximum = parts[2].str()[0] == '>';
+      explore::Condition goal = question.wishes.requirements[i];
+      goal.text = parts[1];
+      wishes.goals = {{goal, is_maximum}};
+      if (alone) wishes.requirements.clear();
+      if (!alone) wishes.requirements.erase(wishes.requirements.begin() + static_cast<std::ptrdiff_t>(i));
+      Search search(*question.plan, wishes, model, processes);
+      if (!search.run([](const explore::SearchState&) { return !process::interrupted(); })) return text;
+      if (search.front().empty()) continue;
+      const explore::Range best = search.front().front().values.front();
+      const double value = is_maximum ? best.most : best.least;
+      const double asked = std::stod(parts[3]);
+      const bool is_met = parts[2] == ">="   ? value >= asked
+                          : parts[2] == "<=" ? value <= asked
+                          : is_maximum       ? value > asked
+                                             : value < asked;
+      if (is_met) continue;
+      text += fmt::format("no board{} meets {}: the nearest has {}, which misses by {:.6g}\n",
+                          alone ? "" : " that meets the other requirements", condition, value_text(best),
+                          std::abs(asked - value));
+    }
+    if (!text.empty()) return text;
+  }
+  return "no board meets all requirements together\n";
+}
+
+std::string judgement_text(const Search::Judgement& judgement, const Search& search) {
+  if (!judgement.refused.empty()) return "refused: " + judgement.refused + '\n';
+  if (!judgement.unmet.empty()) return "does not meet " + judgement.unmet + '\n';
+  const auto values_text = [&](const std::vector<explore::Range>& values) {
+    std::string text;
+    for (std::size_t goal = 0; goal < values.size(); ++goal)
+      text += fmt::format("{}{} {}", goal == 0 ? "" : ", ", search.wishes().goals[goal].figure.text,
+                          value_text(values[goal]));
+    return text;
+  };
+  const std::string its = (judgement.is_bound ? "can at best have " : "has ") + values_text(judgement.values);
+  if (!judgement.dominated_by) return fmt::format("is one of the best: {}\n", its);
+  const explore::FrontPoint& better = search.front()[*judgement.dominated_by];
+  return fmt::format("{}; {} board{} the better {}\n", its, better.boards,
+                     better.boards == 1 ? " has" : "s have", values_text(better.values));
+}
+
+// How a search has ended.
+struct Answer {
+  Search& search;
+  const Question& question;
+  bool is_proven = true;
+  std::uint64_t boards = 0;
+  double seconds = 0;
+};
+
+nlohmann::ordered_json document_of(const Answer& answer) {
+  Search& search = answer.search;
+  nlohmann::ordered_json document = {{"schema", 1},
+                                     {"state", answer.is_proven ? "complete" : "interrupted"},
+                                     {"boards", answer.boards},
+                                     {"combinations", search.combinations()}};
+  auto& front = document["front"] = nlohmann::ordered_json::array();
+  for (const explore::FrontPoint& point : search.front()) {
+    nlohmann::ordered_json one = {{"boards", point.boards}};
+    for (std::size_t goal = 0; goal < point.values.size(); ++goal)
+      one["values"].push_back({{"figure", search.wishes().goals[goal].figure.text},
+                               {"least", point.values[goal].least},
+                               {"most", point.values[goal].most}});
+    const Search::Board board = search.board(point.first.front());
+    one["config"] = platform::to_yaml(*board.board);
+    one["command"] = command_of(answer.question, *board.board, board.run);
+    front.push_back(std::move(one));
+  }
+  return document;
+}
+
+std::string text_of(const Answer& answer, const explore::BoardModel& model, unsigned processes) {
+  Search& search = answer.search;
+  const explore::Plan& plan = *answer.question.plan;
+  std::string text =
+      fmt::format("{} boards in {} combinations of values\n", answer.boards, search.combinations());
+  if (search.front().empty()) {
+    text += answer.is_proven ? empty_text(answer.question, model, processes) : "no board so far\n";
+  } else {
+    text += front_text(search, plan);
+    if (search.front().size() == 1) {
+      const Search::Board board = search.board(search.front().front().first.front());
+      text += "the first of them: " + command_of(answer.question, *board.board, board.run) + '\n';
+    }
+  }
+  text += answer.is_proven ? "proven: every other board was simulated, or is ruled out by a bound\n"
+                           : fmt::format("not proven: {}\n", progress_text(search.state(), answer.seconds));
+  const std::vector<std::string> varied = plan.varied();
+  const bool changes_disparities = std::any_of(varied.begin(), varied.end(), [](const std::string& path) {
+    const platform::Key* const key = platform::find_key(path);
+    return key != nullptr && explore::effects_of_key(key->path).disparities;
+  });
+  if (changes_disparities) text += "how good the disparities are is not among the goals\n";
+  return text;
+}
+
+// Runs the search until it ends, is interrupted, or its time is over. Returns whether it has ended.
+bool run(Search& search, const explore::SearchStore* store, std::optional<double> most_seconds) {
+  constexpr std::chrono::seconds kBetweenWrites{1};
+  if (store != nullptr) search.know(store->results());
+  runs::ProgressLine line("boards are ruled out by bounds, or simulated");
+  const auto start = Clock::now();
+  auto next_write = start + kBetweenWrites;
+  const bool is_whole = search.run([&](const explore::SearchState& state) {
+    line.show(state.boards - state.open, state.boards,
+              [&](double seconds) { return progress_text(state, seconds); });
+    if (store != nullptr && Clock::now() >= next_write) {
+      store->add(search.take_results());
+      next_write = Clock::now() + kBetweenWrites;
+    }
+    const std::chrono::duration<double> seconds = Clock::now() - start;
+    return !process::interrupted() && !(most_seconds && seconds.count() > *most_seconds);
+  });
+  if (store != nullptr) store->add(search.take_results());
+  return is_whole;
+}
+
+int optimise(const OptimiseOptions& options) {
+  Question question = question_of(options);
+  const auto calibration = calibration_of(*question.plan, options.calibration, options.sent);
+  const explore::Plan& plan = *question.plan;
+  const explore::BoardModel model = runs::board_model(calibration ? &calibration->tables : nullptr);
+  const unsigned processes =
+      options.jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
+  std::unique_ptr<Search> search;
+  process::attempt_or_refuse(
+      "", [&] { search = std::make_unique<Search>(plan, question.wishes, model, processes); });
+  std::optional<platform::BoardDraft> asked;
+  process::attempt_or_refuse("--why ", [&] {
+    if (options.why.is_given()) asked = plan.base();
+    for (const std::string& set : options.why.texts()) asked->set(set);
+  });
+  std::optional<explore::StoreLock> lock;
+  std::optional<explore::SearchStore> store;
+  process::attempt_or_refuse("--out ", [&] {
+    if (!options.out.is_given()) return;
+    lock.emplace(options.out.text());
+    store.emplace(options.out.text(),
+                  asked_of(question, calibration ? runs::sha256_of(calibration->tables) : ""));
+  });
+  process::catch_interrupts();
+  const auto start = Clock::now();
+  Answer answer = {*search, question};
+  if (store && store->is_finished()) {
+    search->set_front(store->front(question.wishes.goals.size()));
+    answer.boards = store->boards();
+  } else {
+    answer.is_proven = run(*search, store ? &*store : nullptr, seconds_of(options.within.text()));
+    answer.boards = search->state().boards;
+    if (store && answer.is_proven) store->finish(*search);
+  }
+  answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  std::string text =
+      options.json.is_given() ? json_text(document_of(answer)) : text_of(answer, model, processes);
+  const auto& sets = options.why.texts();
+  const bool places = std::none_of(sets.begin(), sets.end(),
+                                   [](const std::string& set) { return set.rfind("allocation", 0) == 0; });
+  if (asked) text += "this board " + judgement_text(search->judge(*asked, plan.run(), places), *search);
+  process::print(text);
+  if (!process::interrupted()) return kDone;
+  return interrupted(store ? "run the same command to resume"
+                           : "nothing is kept: give --out DB to resume later");
+}
+
+}  // namespace
+
+void add_optimise(Commands& commands) {
+  add_command(
+      commands, "optimise", "Find the best boards of a plan, or for a task, and prove it", optimise,
+      "A plan of sweep, and in it\n"
+      "  placements: {banks: N, stripes: M}   # every different way to place the buffers in at most N "
+      "banks,\n"
+      "                                       # each in one, or striped over up to M\n"
+      "  maximise: [FIGURE, ..]               # figures (stereotlm keys --figures), keys, SQL expressions\n"
+      "  minimise: [FIGURE, ..]\n"
+      "  require: [CONDITION, ..]             # such as frames_per_second.core >= 25\n"
+      "With one goal all boards that tie for the best are found, with several the front: no other board is\n"
+      "at least as good in all goals and better in one. Of a BOARD the usual knobs are varied: modules, "
+      "rows,\n"
+      "lanes, fetch, cache, queues, tables and all placements.\n"
+      "A condition on a rate with an uncertainty holds if it holds for all rates that this leaves open.\n"
+      "Ctrl-C, or --within, ends the search with the best so far. DB is continued by the same command.");
+}
+
+}  // namespace stereotlm::cli

@@ -1,0 +1,172 @@
+#include "sw/explore/optimise/figure_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+
+#include "platform/config/board_area.h"
+#include "platform/config/board_keys.h"
+#include "platform/config/buffer_layout.h"
+#include "platform/yaml/words.h"
+
+namespace stereotlm::explore {
+namespace {
+
+// The names in a text of SQL, such as "image.width", outside its quoted texts.
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto is_of_name = [&](std::size_t place) {
+      const auto c = static_cast<unsigned char>(text[place]);
+      return std::isalnum(c) != 0 || c == '_' || c == '.';
+    };
+    if (text[at] == '\'') {
+      at = std::min(text.find('\'', at + 1), text.size() - 1) + 1;
+    } else if (!is_of_name(at)) {
+      ++at;
+    } else {
+      const std::size_t begin = at;
+      while (at < text.size() && is_of_name(at)) ++at;
+      if (std::isdigit(static_cast<unsigned char>(text[begin])) == 0)
+        names.push_back(text.substr(begin, at - begin));
+    }
+  }
+  return names;
+}
+
+std::optional<double> number_of(const platform::KeyValue& value) {
+  if (const auto* const integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  if (const auto* const decimal = std::get_if<double>(&value)) return *decimal;
+  return std::nullopt;
+}
+
+}  // namespace
+
+// FIGURE < NUMBER, and the like.
+struct Expression::Comparison {
+  std::string figure;
+  std::string sign;
+  double number;
+
+  static std::unique_ptr<Comparison> read(const std::string& text, const std::set<std::string>& figures) {
+    static const std::regex kForm(R"(\s*([A-Za-z_][\w.]*)\s*(<=|>=|==|=|<|>)\s*(-?\d+(?:\.\d+)?)\s*)");
+    std::smatch parts;
+    if (!std::regex_match(text, parts, kForm) || figures.count(parts[1]) == 0) return nullptr;
+    return std::make_unique<Comparison>(Comparison{parts[1], parts[2], std::stod(parts[3])});
+  }
+
+  std::optional<bool> of(const Range& range) const {
+    const auto both = [](bool of_least, bool of_most) {
+      return of_least == of_most ? std::optional(of_least) : std::nullopt;
+    };
+    if (sign == "<") return both(range.least < number, range.most < number);
+    if (sign == "<=") return both(range.least <= number, range.most <= number);
+    if (sign == ">") return both(range.least > number, range.most > number);
+    if (sign == ">=") return both(range.least >= number, range.most >= number);
+    if (range.is_exact()) return range.least == number;
+    return range.least > number || range.most < number ? std::optional(false) : std::nullopt;
+  }
+};
+
+Expression::~Expression() = default;
+
+Expression::Expression(const Condition& condition, const std::set<std::string>& figures)
+    : condition_(condition) {
+  const std::string& text = condition_.text;
+  key_ = platform::find_key(text);
+  if (key_ != nullptr && !platform::has_value(*key_)) key_ = nullptr;
+  is_figure_ = figures.count(text) > 0;
+  for (const std::string& name : names_in(text)) {
+    if (figures.count(name) > 0) used_.insert(name);
+    if (name.rfind("allocation.", 0) == 0 || name.rfind("banks.", 0) == 0) name_of_bank_ = name;
+  }
+  comparison_ = Comparison::read(text, figures);
+  if (key_ == nullptr && !is_figure_ && comparison_ == nullptr)
+    Conditions({condition_}, {used_.begin(), used_.end()});  // throws if it is no expression
+}
+
+bool Expression::is_fixed() const {
+  const auto& without = figures_without_simulation();
+  return std::all_of(used_.begin(), used_.end(), [&without](const std::string& name) {
+    return std::find(without.begin(), without.end(), name) != without.end();
+  });
+}
+
+Range Known::range(const std::string& figure) const {
+  if (const auto found = without_simulation.find(figure); found != without_simulation.end())
+    return found->second;
+  const auto found = others.find(figure);
+  return found == others.end() ? Range() : found->second;
+}
+
+// By SQLite. All figures that it names are exact. nullopt: NULL.
+std::optional<double> Expression::computed(const Known& known) {
+  std::vector<platform::BoardValue> values = platform::values_of(known.board);
+  values.push_back({kSourcePath, known.run.camera ? "camera" : "preloaded"});
+  values.push_back({kFramesPath, static_cast<std::int64_t>(known.run.frames)});
+  for (const std::string& name : used_) values.push_back({name, known.range(name).least});
+  if (!sql_)
+    sql_ = std::make_unique<Conditions>(std::vector<Condition>{condition_},
+                                        std::vector<std::string>{used_.begin(), used_.end()});
+  return sql_->number(values);
+}
+
+Range Expression::range(const Known& known) {
+  if (is_figure_) return known.range(condition_.text);
+  const bool is_known = std::all_of(
+      used_.begin(), used_.end(), [&known](const std::string& name) { return known.range(name).is_exact(); });
+  if (!is_known) return {};
+  const auto number = key_ != nullptr ? number_of(platform::value_of(*key_, known.board)) : computed(known);
+  if (number) return Range::of(*number);
+  throw ConditionError(fmt::format("{}: {}: not a number on each board", condition_.place, condition_.name),
+                       "not a number on each board");
+}
+
+std::optional<bool> Expression::holds(const Known& known) {
+  if (comparison_) return comparison_->of(known.range(comparison_->figure));
+  for (const std::string& name : used_) {
+    if (!known.range(name).is_exact()) return std::nullopt;
+  }
+  return computed(known).value_or(0) != 0;
+}
+
+const std::vector<std::string>& figures_without_simulation() {
+  static const std::vector<std::string> kNames = {"area.lut_equivalents",
+                                                  "area.slices",
+                                                  "area.slices_percent",
+                                                  "area.luts",
+                                                  "area.flip_flops",
+                                                  "area.block_rams",
+                                                  "area.block_rams_percent",
+                                                  "area.multipliers",
+                                                  "area.multipliers_percent",
+                                                  "pins",
+                                                  "used_banks"};
+  return kNames;
+}
+
+FigureRanges figures_without_simulation(const platform::BoardConfig& board) {
+  const area::Area its = platform::area_of(board);
+  const std::vector<bool> used = platform::used_banks(board);
+  const std::vector<double> values = {
+      static_cast<double>(its.lut_equivalents),
+      static_cast<double>(its.slices),
+      its.slices_percent,
+      static_cast<double>(its.luts),
+      static_cast<double>(its.flip_flops),
+      static_cast<double>(its.block_rams),
+      its.block_rams_percent,
+      static_cast<double>(its.multipliers),
+      its.multipliers_percent,
+      static_cast<double>(platform::pins_of(board)),
+      static_cast<double>(std::count(used.begin(), used.end(), true)),
+  };
+  FigureRanges figures;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    figures.emplace(figures_without_simulation()[i], Range::of(values[i]));
+  return figures;
+}
+
+}  // namespace stereotlm::explore

@@ -1,0 +1,101 @@
+#include "sw/runs/simulation/board_model.h"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "platform/assembly/preloaded_system.h"
+#include "platform/figures/bounds.h"
+#include "platform/figures/derived_figures.h"
+#include "sw/explore/optimise/key_effects.h"
+#include "sw/runs/simulation/simulate_point.h"
+
+namespace stereotlm::runs {
+namespace {
+
+using platform::BoardConfig;
+
+// What the slots of boards access. That of the last board is kept, because the next one is mostly like it.
+class AccessesOfBoards {
+ public:
+  explicit AccessesOfBoards(const platform::Tables* tables) : tables_(tables) {}
+
+  const fpga::AccessPatterns& patterns(const BoardConfig& board) {
+    std::string key = explore::waitless_key(board);
+    for (const platform::BankConfig& bank : board.banks) key += bank.sdram ? 's' : '-';
+    if (key == key_) return *patterns_;
+    key_ = std::move(key);
+    patterns_ = platform::access_patterns(board, tables_);
+    accesses_.reset();
+    return *patterns_;
+  }
+  const platform::FrameAccesses& accesses(const BoardConfig& board) {
+    patterns(board);
+    if (!accesses_) accesses_ = platform::frame_accesses(board, *patterns_);
+    return *accesses_;
+  }
+
+ private:
+  const platform::Tables* tables_;
+  std::string key_;
+  std::optional<fpga::AccessPatterns> patterns_;
+  std::optional<platform::FrameAccesses> accesses_;
+};
+
+// The figures of a run of the core alone that follow from its cycles, as collect_statistics() has them.
+std::map<std::string, double> figures_of_cycles(const BoardConfig& board, std::uint64_t frames,
+                                                std::uint64_t all_cycles,
+                                                const platform::FrameAccesses* accesses) {
+  const std::uint64_t cycles =
+      all_cycles - frames * static_cast<std::uint64_t>(board.fpga.pipeline_latency_cycles);
+  std::map<std::string, double> figures = {
+      {"cycles", static_cast<double>(cycles)},
+      {"frames_per_second.core",
+       board.fpga.clock_mhz * 1e6 * static_cast<double>(frames) / static_cast<double>(all_cycles)}};
+  if (accesses == nullptr) return figures;
+  platform::Statistics statistics;
+  statistics.frames = frames;
+  statistics.cycles = cycles;
+  statistics.banks = platform::accesses_of_banks(board, *accesses, frames);
+  statistics.ports.resize(core_ports(board).size());
+  derive_energy(board, statistics);
+  figures["energy.memory_mj_per_frame"] = statistics.energy.memory_mj_per_frame;
+  return figures;
+}
+
+}  // namespace
+
+explore::BoardModel board_model(const platform::Tables* tables) {
+  const auto all = std::make_shared<AccessesOfBoards>(tables);
+  const auto simulator =
+      std::make_shared<PointSimulator>(tables == nullptr ? PointSimulator() : PointSimulator(*tables));
+  explore::BoardModel model;
+  model.waitless_cycles = [all](const BoardConfig& board) {
+    return platform::waitless_frame_cycles(board, all->patterns(board), 1).front();
+  };
+  model.contended_cycles = [all](const BoardConfig& board) {
+    std::uint64_t most = 0;
+    for (const platform::ResourceBound& bound : platform::frame_bounds(board, all->accesses(board), 0))
+      most = std::max(most, bound.cycles);
+    return most;
+  };
+  model.cycles = [all](const BoardConfig& board, std::uint64_t frames) {
+    const std::vector<std::uint64_t> cycles =
+        platform::core_frame_cycles(board, all->patterns(board), frames);
+    return std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0});
+  };
+  model.figures_of_cycles = [all](const BoardConfig& board, std::uint64_t frames, std::uint64_t cycles,
+                                  bool has_energy) {
+    return figures_of_cycles(board, frames, cycles, has_energy ? &all->accesses(board) : nullptr);
+  };
+  model.steady_bound = [all](const BoardConfig& board) {
+    return platform::steady_bound(board, all->accesses(board));
+  };
+  model.simulate = [simulator](const explore::Point& point) { return (*simulator)(point); };
+  return model;
+}
+
+}  // namespace stereotlm::runs

@@ -1,0 +1,131 @@
+"""optimise: what it prints, keeps, refuses and resumes. That it finds the best is in random_searches_test."""
+
+import json
+import random
+import signal
+import sqlite3
+import time
+
+import jsonschema
+
+import program
+from program import PRELOADED, ProgramTest, run, sets
+
+PLAN = """
+board: fpl2003
+run: {source: preloaded}
+set: {image.width: 32, image.height: 24}
+vary:
+  matcher.window: [5, 7]
+  matcher.units: [all, 40]
+  matcher.fetch: [column, line_buffer]
+  matcher.rows: [1, 2]
+placements: {banks: 3}
+maximise: frames_per_second.core
+minimise: [area.slices, used_banks]
+"""
+# Its search takes some seconds.
+LONG = PLAN.replace("width: 32", "width: 160").replace("height: 24", "height: 120").replace(
+    "placements", "  fpga.arbitration: [round_robin, age]\n  fpga.lane_fifo_slots: [3, 4, 8]\nplacements")
+
+
+class Optimise(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.store = self.folder / "found.db"
+
+    def plan(self, text=PLAN):
+        return self.file("plan.yaml", text)
+
+    def found(self, *words):
+        document = json.loads(self.succeeds(run("optimise", *words, "--json")))
+        schema = json.loads(self.succeeds(run("keys", "--schema", "optimise")))
+        jsonschema.Draft202012Validator(schema).validate(document)
+        return document
+
+    def test_values_are_those_of_run(self):
+        for point in self.found(self.plan())["front"]:
+            board = self.file("board.yaml", point["config"])
+            self.succeeds(run("run", board, "--timing-only", "--frames", 2, *PRELOADED, "--out", self.out))
+            stats = self.stats()
+            values = {value["figure"]: value["least"] for value in point["values"]}
+            self.assertEqual(values["frames_per_second.core"], stats["frames_per_second"]["core"])
+            self.assertEqual(values["area.slices"], stats["area"]["slices"])
+            command = point["command"].split()
+            self.assertEqual(command[:3], ["stereotlm", "explain", "fpl2003"])
+
+    def test_bytes_depend_on_the_search_alone(self):
+        """Killed at random and resumed, with any number of processes."""
+        plan = self.plan(LONG)
+        self.succeeds(run("optimise", plan, "--out", self.store, "--jobs", 1))
+        expected = self.store.read_bytes()
+        again = self.succeeds(run("optimise", plan, "--out", self.store))
+        self.assertEqual(self.store.read_bytes(), expected)
+        chance = random.Random(1)
+        self.store.unlink()
+        killed = 0
+        for _ in range(30):
+            process = self.start("optimise", plan, "--out", self.store, "--jobs", chance.randint(1, 3))
+            time.sleep(chance.uniform(0, 0.7))
+            process.kill()
+            status = process.wait()
+            killed += status == -signal.SIGKILL
+            if status == 0:
+                break
+        self.assertGreater(killed, 0)
+        self.assertEqual(self.succeeds(run("optimise", plan, "--out", self.store)), again)
+        self.assertEqual(self.store.read_bytes(), expected)
+
+    def test_an_interrupt_gives_the_best_so_far(self):
+        plan = self.plan(LONG)
+        process = run("optimise", plan, "--out", self.store, "--within", "0.3s")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertRegex(process.stdout, r"not proven: [\d.e+]+ boards: \d+ open, \d+ simulated")
+        self.succeeds(run("optimise", plan, "--out", self.store))
+        with sqlite3.connect(self.store) as database:
+            parts = database.execute("SELECT first, last FROM parts ORDER BY first").fetchall()
+            combinations, = database.execute("SELECT value FROM search WHERE name = 'combinations'").fetchone()
+        self.assertEqual([first for first, _ in parts], [0] + [last + 1 for _, last in parts[:-1]])
+        self.assertEqual(parts[-1][1], combinations - 1)
+
+    def test_says_why_a_board_is_not_the_best(self):
+        ask = ["optimise", self.plan(), "--for", "area.slices < 12000"]
+        text = self.succeeds(run(*ask, "--why", "matcher.window=9"))
+        self.assertRegex(text, r"this board (has|can at best have) frames_per_second.core \d+.*the better")
+        text = self.succeeds(run(*ask, "--why", "matcher.disparities=200"))
+        self.assertIn("this board does not meet area.slices < 12000", text)
+        text = self.succeeds(run(*ask, "--why", "matcher.rows=3", "--why", "matcher.fetch=line_buffer"))
+        self.assertIn("this board refused: matcher.rows = 3: must be 1", text)
+
+    def test_says_what_leaves_nothing(self):
+        ask = ["optimise", "fpl2003", *sets("image.width=32", "image.height=24"), "--minimise", "area.slices"]
+        text = self.succeeds(run(*ask, "--for", "frames_per_second.core >= 1000000"))
+        self.assertRegex(text, r"no board meets frames_per_second.core >= 1000000: the nearest has \d+")
+        text = self.succeeds(run(*ask, "--for", "frames_per_second.core >= 20000"))
+        self.assertRegex(text, r"the first of them: stereotlm explain fpl2003 --set image.width=32")
+
+    def test_refusals(self):
+        self.all_refused([
+            (["optimise", "fpl2003"], "fpl2003: no goal: give maximise or minimise, such as maximise: "
+             "frames_per_second.core"),
+            (["optimise", "fpl2003", "--minimise", "area.slice"],
+             "--minimise: area.slice: no such column: area.slice; nearest: area.slices"),
+            (["optimise", "fpl2003", "--minimise", "pins", "--within", "5"],
+             "--within = 5: must be a time such as 90s, 5min or 2h"),
+            (["optimise", self.plan(), "--set", "fpga.lanes=2"],
+             "--set: of a board; a plan has the section set"),
+            (["optimise", self.plan(), "--for", "allocation.left_lut = 'bank0'"],
+             "--for: allocation.left_lut = 'bank0': allocation.left_lut: names banks, and placements do not "
+             "tell banks apart that are alike"),
+        ])
+        process = run("sweep", self.plan(), "--out", self.store)
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("of a search: stereotlm optimise takes this plan", process.stderr)
+        self.succeeds(run("optimise", self.plan(), "--out", self.store))
+        process = run("optimise", self.plan(), "--out", self.store, "--for", "pins < 500")
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("holds another search, with another goals", process.stderr)
+
+
+if __name__ == "__main__":
+    program.main()
