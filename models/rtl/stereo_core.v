@@ -25,7 +25,8 @@ module stereo_core #(
     // Frames.
     input start, input [32*5-1:0] bases, output reg busy, output ends,
     output reg [63:0] cycles,  // of the frame, up to now; up to its last write
-    // The local bus: a word at a time. Its data come as many cycles after the grant as the bank takes.
+    // The local bus: a word at a time. What it reads comes as many cycles after the grant as the bank takes,
+    // and only if host_address is still in the same bank.
     input host_request, input host_write,
     input [31:0] host_address,  // as a base
     input [31:0] host_write_data, output host_granted, output [31:0] host_read_data,

@@ -39,18 +39,16 @@ RtlBoard::RtlBoard(const platform::BoardConfig& board, const platform::Tables& t
   inputs_.reset = true;
   for (int cycle = 0; cycle < kResetCycles; ++cycle) step();
   inputs_.reset = false;
+  inputs_.bases = buffers_.of_frame(0);
+  inputs_.start = true;
+  step();
+  inputs_.start = false;
 }
 
 kernels::GrayImage RtlBoard::run_frame(const host::StereoPair& pair, bool last, std::uint64_t most_cycles,
                                        const Observer& observer) {
   const std::uint64_t frame = frame_cycles_.size();
   const fpga::FrameBases bases = buffers_.of_frame(frame);
-  if (frame == 0) {
-    inputs_.bases = bases;
-    inputs_.start = true;
-    step();
-    inputs_.start = false;
-  }
   load(bases[2], pair.left.pixels);
   load(bases[3], pair.right.pixels);
   const int latency = board_.fpga.pipeline_latency_cycles;

@@ -23,10 +23,12 @@ class RtlBoard {
 
   RtlBoard(const platform::BoardConfig& board, const platform::Tables& tables, RtlCore& core);
 
-  // Runs a frame, and returns its disparities. `last`: no frame follows. Throws std::runtime_error if the
-  // frame takes more than `most_cycles`.
+  // Runs the next frame, and returns its disparities. `last`: no frame follows. Throws std::runtime_error if
+  // the frame takes more than `most_cycles`.
   kernels::GrayImage run_frame(const host::StereoPair& pair, bool last, std::uint64_t most_cycles,
                                const Observer& observer);
+  RtlInputs& inputs() { return inputs_; }  // of the next cycle: an observer may set those of the host
+  const std::vector<std::uint32_t>& words(std::size_t bank) const { return banks_[bank].words; }
   // Of the frames that have ended, pipeline_latency_cycles included.
   const std::vector<std::uint64_t>& frame_cycles() const { return frame_cycles_; }
 

@@ -10,7 +10,7 @@
 namespace stereotlm::test {
 
 inline constexpr std::size_t kRtlBanks = 6;
-inline constexpr std::size_t kRtlPorts = 5;  // of the core; in the order of stereo_core.v
+inline constexpr std::size_t kRtlPorts = 6;  // in the order of stereo_core.v; the last one is the host's
 
 // The inputs of stereo_core in a cycle.
 struct RtlInputs {
@@ -21,14 +21,18 @@ struct RtlInputs {
   std::uint32_t priority_list = 0;
   std::array<std::uint32_t, kRtlBanks> turnaround{};
   std::array<bool, kRtlBanks> latency_2{};
-  std::array<std::uint32_t, kRtlPorts> bases{};
+  std::array<std::uint32_t, kRtlPorts - 1> bases{};
   std::array<std::uint32_t, kRtlBanks> read_data{};
+  bool host_request = false;
+  bool host_write = false;
+  std::uint32_t host_address = 0;  // as a base
+  std::uint32_t host_write_data = 0;
 };
 
 // Its outputs in the same cycle.
 struct RtlOutputs {
   struct Port {
-    std::uint32_t state = 0;    // port_states.vh
+    std::uint32_t state = 0;    // port_states.vh; of the host 0 or 2
     std::uint32_t address = 0;  // bank and word, as in a base register
     bool granted = false;
   };
@@ -40,6 +44,7 @@ struct RtlOutputs {
   };
   std::array<Port, kRtlPorts> ports;
   std::array<Bank, kRtlBanks> banks;
+  std::uint32_t host_read_data = 0;
   bool ends = false;
   bool consumes = false;
   std::uint64_t cycles = 0;

@@ -13,7 +13,9 @@ SOURCE = """\
 #include "tests/integration/rtl/verilated_core.h"
 {includes}
 namespace stereotlm::test {{
-std::unique_ptr<RtlCore> make_rtl_{name}() {{ return std::make_unique<VerilatedCore<V{name}>>(); }}
+std::unique_ptr<RtlCore> make_rtl_{name}() {{
+  return std::make_unique<VerilatedCore<V{name}>>();
+}}
 }}  // namespace stereotlm::test
 """
 
@@ -42,8 +44,9 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)  # files of another run have other names
     given = [f"-G{key}={value}" for key, value in parameters(wanted).items()]
     sources = sorted(pathlib.Path(rtl).glob("*.v"))
-    subprocess.run(["verilator", "--cc", "-Wall", "-O3", "--x-initial", "unique", "--top-module", "stereo_core",
-                    "--prefix", f"V{name}", "--Mdir", folder, f"-I{rtl}", *given, *sources], check=True)
+    options = ["--cc", "-Wall", "-O3", "--x-initial", "unique", f"-I{rtl}", "--top-module", "stereo_core",
+               "--prefix", f"V{name}", "--Mdir", folder]
+    subprocess.run(["verilator", *options, *given, *sources], check=True)
     includes = "".join(f'#include "{path}"\n' for path in sorted(folder.glob("*.cpp")))
     (pathlib.Path(out) / f"{name}.cpp").write_text(SOURCE.format(name=name, includes=includes))
 

@@ -36,16 +36,21 @@ class VerilatedCore : public RtlCore {
       model_.latency_2 = static_cast<std::uint8_t>(model_.latency_2 | inputs.latency_2[bank] << bank);
       model_.bank_read_data[bank] = inputs.read_data[bank];
     }
-    for (std::size_t port = 0; port < kRtlPorts; ++port) model_.bases[port] = inputs.bases[port];
-    model_.host_request = 0;
+    for (std::size_t port = 0; port < inputs.bases.size(); ++port) model_.bases[port] = inputs.bases[port];
+    model_.host_request = inputs.host_request;
+    model_.host_write = inputs.host_write;
+    model_.host_address = inputs.host_address;
+    model_.host_write_data = inputs.host_write_data;
     model_.eval();
     if (inputs.starts_at_end && model_.ends != 0) {
       model_.start = 1;
       model_.eval();
     }
-    for (std::size_t port = 0; port < kRtlPorts; ++port)
+    for (std::size_t port = 0; port < inputs.bases.size(); ++port)
       outputs_.ports[port] = {bits_of(model_.port_state, 3 * port, 3), model_.port_address[port],
                               bits_of(model_.port_granted, port, 1) != 0};
+    outputs_.ports.back() = {inputs.host_request ? 0U : 2U, inputs.host_address, model_.host_granted != 0};
+    outputs_.host_read_data = model_.host_read_data;
     for (std::size_t bank = 0; bank < kRtlBanks; ++bank)
       outputs_.banks[bank] = {bits_of(model_.bank_enable, bank, 1) != 0,
                               bits_of(model_.bank_write, bank, 1) != 0,
