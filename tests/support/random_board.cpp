@@ -421,7 +421,8 @@ std::uint64_t random_boards(std::uint64_t without_it) {
   return asked != nullptr ? std::stoull(asked) : without_it;
 }
 
-RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs) {
+RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs,
+                              const std::function<void(RandomBoard&)>& fix) {
   SplitMix64 random(seed);
   RandomBoard board;
   board.seed = seed;
@@ -440,6 +441,7 @@ RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs) {
   board.pipeline_latency_cycles = random.mostly_small(0, 8, 40);
   draw_banks(board, random);
   draw_allocation(board, random);
+  if (fix) fix(board);
 
   if (board.left_lut) board.left_table = random_table(board, random);
   if (board.right_lut) board.right_table = random_table(board, random);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -89,7 +90,9 @@ std::uint64_t random_boards(std::uint64_t without_it);
 
 // Without knobs a seed gives the board of sections 1 to 6 that it has always given. Each knob draws from a
 // generator of its own.
-RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs = {});
+// `fix` sets what the board must have, before its tables and pictures are drawn.
+RandomBoard make_random_board(std::uint64_t seed, const RandomKnobs& knobs = {},
+                              const std::function<void(RandomBoard&)>& fix = {});
 
 // For the message of a failure.
 inline std::string describe(const RandomBoard& board) {

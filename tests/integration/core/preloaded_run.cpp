@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <systemc>
 
 #include "models/testing/monitoring_binder.h"
@@ -39,13 +40,21 @@ std::string blame_key(const std::string& port, const std::string& bank, const st
 
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
                            const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
-                           fpga::Fidelity fidelity, bool with_rows, platform::Conflicts* conflicts) {
+                           fpga::Fidelity fidelity, bool with_rows, platform::Conflicts* conflicts,
+                           fpga::CycleObserver* observer) {
   PairsInTurn source(pairs);
   KeptFrames sink;
   MonitoringBinder binder;
   platform::PreloadedSystem system("system", board, tables, frames, source, sink, binder, fidelity);
   if (with_rows) system.board.core.frames().record_rows();
   if (conflicts != nullptr) system.board.core.frames().record(conflicts->recorder());
+  std::optional<fpga::CycleRecorder> cycles;
+  if (observer != nullptr) {
+    cycles.emplace(platform::core_config(board), conflicts->recorder(), fpga::CycleWindow{}, *observer);
+    if (tables.left) cycles->set_entries(fpga::Side::kLeft, tables.left->entries.data());
+    if (tables.right) cycles->set_entries(fpga::Side::kRight, tables.right->entries.data());
+    system.board.core.frames().record(*cycles);
+  }
   sc_core::sc_start();
   EXPECT_TRUE(system.host.finished());
   // Those of the host, of the registers and of the results; of the readers in each lane; one to each bank.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "models/fpga/record/core_cycle.h"
 #include "models/fpga/stereo_core.h"
 #include "models/host/frame_source.h"
 #include "platform/config/board_config.h"
@@ -22,11 +23,12 @@ struct PreloadedRun {
 };
 
 // Simulates `frames` frames, frame f with pair f mod length, every memory-mapped link under a protocol
-// monitor (a violation fails the test). Once per process.
+// monitor (a violation fails the test). `observer`: of all cycles of the frames; needs `conflicts`. Once per
+// process.
 PreloadedRun run_preloaded(const platform::BoardConfig& board, const platform::Tables& tables,
                            const std::vector<host::StereoPair>& pairs, std::uint64_t frames,
                            fpga::Fidelity fidelity = fpga::Fidelity::kCycle, bool with_rows = false,
-                           platform::Conflicts* conflicts = nullptr);
+                           platform::Conflicts* conflicts = nullptr, fpga::CycleObserver* observer = nullptr);
 
 // Every counter under a name of its own, "left_lut granted", "bank0 reads", "left_lut blames result in
 // bank0", "frame 0 cycles": of the model and of the plain loop alike.
