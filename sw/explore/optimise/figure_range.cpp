@@ -14,7 +14,14 @@
 namespace stereotlm::explore {
 namespace {
 
-// The names in a text of SQL, such as "image.width", outside its quoted texts.
+std::optional<double> number_of(const platform::KeyValue& value) {
+  if (const auto* const integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  if (const auto* const decimal = std::get_if<double>(&value)) return *decimal;
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> names;
   for (std::size_t at = 0; at < text.size();) {
@@ -35,14 +42,6 @@ std::vector<std::string> names_in(const std::string& text) {
   }
   return names;
 }
-
-std::optional<double> number_of(const platform::KeyValue& value) {
-  if (const auto* const integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
-  if (const auto* const decimal = std::get_if<double>(&value)) return *decimal;
-  return std::nullopt;
-}
-
-}  // namespace
 
 // FIGURE < NUMBER, and the like.
 struct Expression::Comparison {

@@ -70,6 +70,9 @@ class Expression {
   std::unique_ptr<Conditions> sql_;         // made when it is needed, after a fork
 };
 
+// The names in an SQL text, such as "image.width", outside its quoted texts.
+std::vector<std::string> names_in(const std::string& text);
+
 // The figures of a board that need no simulation: area, pins, banks in use.
 const std::vector<std::string>& figures_without_simulation();
 FigureRanges figures_without_simulation(const platform::BoardConfig& board);

@@ -18,6 +18,7 @@
 #include "sw/explore/optimise/key_effects.h"
 #include "sw/explore/optimise/workers.h"
 #include "sw/files/text_forms.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -99,9 +100,12 @@ namespace {
 std::string nearest_name(const std::string& message, const std::set<std::string>& figures) {
   const std::string unknown = "no such column: ";
   if (message.rfind(unknown, 0) != 0) return "";
-  std::vector<std::string> names(figures.begin(), figures.end());
+  const std::string name = message.substr(unknown.size());
+  std::vector<std::string> names = stats::figure_names_like(name);
+  names.insert(names.end(), figures.begin(), figures.end());
   for (const platform::Key& key : platform::board_keys()) names.push_back(key.path);
-  return platform::nearest_text(message.substr(unknown.size()), names);
+  const std::string nearest = platform::nearest_path(name, names);
+  return nearest.empty() ? "" : "; nearest: " + nearest;
 }
 
 }  // namespace
@@ -197,12 +201,15 @@ class Search::Space {
 
 Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardModel& model)
     : plan_(plan), wishes_(wishes), model_(model) {
-  std::set<std::string> names = model.figures;
+  std::set<std::string> names;
   const auto& without = figures_without_simulation();
   names.insert(without.begin(), without.end());
   names.insert(core_figures().begin(), core_figures().end());
   std::vector<platform::Diagnostic> problems;
   const auto add = [&](const Condition& text, std::vector<Expression>& to) {
+    for (const std::string& name : names_in(text.text)) {
+      if (stats::find_figure(name) != nullptr) names.insert(name);
+    }
     try {
       to.emplace_back(text, names);
       if (const std::string name = to.back().name_of_bank(); wishes.most_banks > 0 && !name.empty())
@@ -210,8 +217,11 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
                                                     "apart that are alike",
                                                     text.name, name)});
     } catch (const std::invalid_argument& error) {
+      const std::string reason = error.what();  // which may name the nearest key
+      const std::string own = reason.substr(0, reason.find("; nearest: "));
+      const std::string nearest = nearest_name(own, names);
       problems.push_back(
-          {text.place, fmt::format("{}: {}{}", text.name, error.what(), nearest_name(error.what(), names))});
+          {text.place, fmt::format("{}: {}", text.name, nearest.empty() ? reason : own + nearest)});
     }
   };
   for (const SearchWishes::Goal& goal : wishes.goals) {

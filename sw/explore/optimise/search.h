@@ -39,8 +39,6 @@ struct BoardModel {
   std::function<double(const platform::BoardConfig& board)> steady_bound;
   // All figures of a point.
   std::function<Figures(const Point& point)> simulate;
-  // The names of all of them.
-  std::set<std::string> figures;
 };
 
 // The figures of BoardModel::figures_of_cycles.

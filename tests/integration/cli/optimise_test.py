@@ -84,7 +84,8 @@ class Optimise(ProgramTest):
         self.succeeds(run("optimise", plan, "--out", self.store))
         with sqlite3.connect(self.store) as database:
             parts = database.execute("SELECT first, last FROM parts ORDER BY first").fetchall()
-            combinations, = database.execute("SELECT value FROM search WHERE name = 'combinations'").fetchone()
+            query = "SELECT value FROM search WHERE name = 'combinations'"
+            combinations, = database.execute(query).fetchone()
         self.assertEqual([first for first, _ in parts], [0] + [last + 1 for _, last in parts[:-1]])
         self.assertEqual(parts[-1][1], combinations - 1)
 

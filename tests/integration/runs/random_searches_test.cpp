@@ -274,12 +274,6 @@ Front brute_front(const explore::Plan& plan) {
   return front;
 }
 
-explore::BoardModel model_of_test() {
-  explore::BoardModel model = runs::board_model(nullptr);
-  model.figures = {kStalls};
-  return model;
-}
-
 // How the search of a space differs from brute force; empty if it does not.
 std::string difference(std::uint64_t seed, const explore::BoardModel& model) {
   static std::map<std::uint64_t, Front> fronts;
@@ -337,7 +331,7 @@ std::string difference(std::uint64_t seed, const explore::BoardModel& model) {
 
 TEST(RandomSearches, FindTheFrontOfBruteForce) {
   const std::uint64_t spaces = spaces_of_environment(12);
-  const explore::BoardModel model = model_of_test();
+  const explore::BoardModel model = runs::board_model(nullptr);
   const char* const first = std::getenv("STEREOTLM_FIRST_SEED");
   for (std::uint64_t seed = first != nullptr ? std::stoull(first) : 1; seed <= spaces; ++seed) {
     const RandomSpace space(seed);
@@ -359,14 +353,14 @@ int seen(const explore::BoardModel& wrong) {
 }
 
 TEST(RandomSearches, SeeAWrongBound) {
-  explore::BoardModel wrong = model_of_test();
+  explore::BoardModel wrong = runs::board_model(nullptr);
   wrong.waitless_cycles = [right = wrong.waitless_cycles](const BoardConfig& board) {
-    return right(board) + right(board) / 4;
+    return 2 * right(board);
   };
   EXPECT_GT(seen(wrong), 0);
-  wrong = model_of_test();
+  wrong = runs::board_model(nullptr);
   wrong.contended_cycles = [right = wrong.contended_cycles](const BoardConfig& board) {
-    return right(board) + right(board) / 4;
+    return 2 * right(board);
   };
   EXPECT_GT(seen(wrong), 0);
 }
