@@ -69,6 +69,7 @@ struct Expression::Comparison {
   }
 };
 
+Expression::Expression(Expression&& other) noexcept = default;
 Expression::~Expression() = default;
 
 Expression::Expression(const Condition& condition, const std::set<std::string>& figures)

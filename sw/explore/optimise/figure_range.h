@@ -41,7 +41,7 @@ class Expression {
   // `place`, `section`: for messages. `is_figure`: whether a name, if it is no key, is a figure. Throws
   // platform::BoardError if the text is no such expression.
   Expression(const Condition& condition, const std::set<std::string>& figures);
-  Expression(Expression&&) = default;
+  Expression(Expression&& other) noexcept;
   ~Expression();
 
   const std::string& text() const { return condition_.text; }

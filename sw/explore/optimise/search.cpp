@@ -149,9 +149,9 @@ class Search::Space {
   bool is_maximum(std::size_t goal) const { return maxima_[goal]; }
   const std::vector<std::string>& result_names() const { return needed_; }
 
-  const Combination& combination(std::uint64_t number);
-  const Combination& take(std::uint64_t number, BoardConfig board, const PointRun& run,
-                          std::vector<std::string> rules, bool places);
+  Combination& combination(std::uint64_t number);
+  Combination& take(std::uint64_t number, BoardConfig board, const PointRun& run,
+                    std::vector<std::string> rules, bool places);
   const std::string& requirement(std::size_t number) const { return requirements_[number].text(); }
   // Of a group of placements, without a simulation.
   struct Estimate {
@@ -160,17 +160,17 @@ class Search::Space {
     Values best{};
   };
   // The best of all placements of a combination.
-  Estimate estimate(const Combination& of);
-  Estimate estimate(const Combination& of, const Placements::Group& group, std::uint64_t placement);
-  std::uint64_t least_cycles(const Combination& of, const Placements::Group& group);
+  Estimate estimate(Combination& of);
+  Estimate estimate(Combination& of, const Placements::Group& group, std::uint64_t placement);
+  std::uint64_t least_cycles(Combination& of, const Placements::Group& group);
 
   // The keys of the results that a group, or one of its placements, needs.
-  std::vector<std::string> result_keys(const Combination& of, const Placements::Group& group,
+  std::vector<std::string> result_keys(Combination& of, const Placements::Group& group,
                                        std::uint64_t placement);
-  std::vector<double> simulate(const Combination& of, const Placements::Group& group, std::uint64_t placement,
+  std::vector<double> simulate(Combination& of, const Placements::Group& group, std::uint64_t placement,
                                std::size_t which);
   // nullopt if the board does not meet the requirements. `results`: of each of the keys.
-  std::optional<std::vector<Range>> values(const Combination& of, const Placements::Group& group,
+  std::optional<std::vector<Range>> values(Combination& of, const Placements::Group& group,
                                            std::uint64_t placement,
                                            const std::vector<std::vector<double>>& results);
   std::vector<double> totals(const Combination& of, const std::vector<std::vector<double>>& results) const;
@@ -178,11 +178,12 @@ class Search::Space {
  private:
   // Whether placements of one use of banks can differ in figures that follow from the cycles.
   bool is_alone(const Combination& of) const { return of.is_full || (needs_energy_ && !of.takes_alike); }
-  const Combination::OfUse& of_use(std::uint32_t use);
-  Combination::OfUse facts_of(const BoardConfig& board);
-  Estimate estimate(const Combination::OfUse& facts, std::uint64_t least_cycles, bool has_energy);
-  std::uint64_t least_cycles_of_way(const Combination& of, std::uint32_t way, bool waitless_alone);
-  std::uint64_t waitless_cycles(const Combination& of);
+  const Combination::OfUse& of_use(Combination& of, std::uint32_t use);
+  Combination::OfUse facts_of(const Combination& of, const BoardConfig& board);
+  Estimate estimate(const Combination& of, const Combination::OfUse& facts, std::uint64_t least_cycles,
+                    bool has_energy);
+  std::uint64_t least_cycles_of_way(Combination& of, std::uint32_t way, bool waitless_alone);
+  std::uint64_t waitless_cycles(Combination& of);
 
   const Plan& plan_;
   const SearchWishes& wishes_;
@@ -250,7 +251,7 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
 }
 
-const Combination& Search::Space::combination(std::uint64_t number) {
+Combination& Search::Space::combination(std::uint64_t number) {
   if (last_.number == number && last_.placements) return last_;
   Plan::ReadPoint read = plan_.read(number);
   std::vector<std::string> rules;
@@ -262,13 +263,13 @@ const Combination& Search::Space::combination(std::uint64_t number) {
 
 // Makes a combination the last one. `rules`: that its board breaks. `places`: whether its buffers can be
 // placed elsewhere.
-const Combination& Search::Space::take(std::uint64_t number, BoardConfig board, const PointRun& run,
-                                       std::vector<std::string> rules, bool places) {
+Combination& Search::Space::take(std::uint64_t number, BoardConfig board, const PointRun& run,
+                                 std::vector<std::string> rules, bool places) {
   last_ = {};
   last_.number = number;
   last_.run = run;
   last_.board = std::move(board);
-  const auto impossible = [this](const std::string& reason) -> const Combination& {
+  const auto impossible = [this](const std::string& reason) -> Combination& {
     last_.verdict = Verdict::kImpossible;
     last_.reason = reason;
     return last_;
@@ -318,10 +319,9 @@ const Combination& Search::Space::take(std::uint64_t number, BoardConfig board, 
   return last_;
 }
 
-std::uint64_t Search::Space::least_cycles_of_way(const Combination& of, std::uint32_t way,
-                                                 bool waitless_alone) {
-  last_.least_cycles_of_way.resize(of.placements->ways());
-  std::optional<std::uint64_t>& least = last_.least_cycles_of_way[way];
+std::uint64_t Search::Space::least_cycles_of_way(Combination& of, std::uint32_t way, bool waitless_alone) {
+  of.least_cycles_of_way.resize(of.placements->ways());
+  std::optional<std::uint64_t>& least = of.least_cycles_of_way[way];
   if (least && !waitless_alone) return *least;
   const BoardConfig one = of.placements->board_of_way(of.board, way);
   const auto known = [this](const std::string& key, const auto& compute) {
@@ -338,7 +338,7 @@ std::uint64_t Search::Space::least_cycles_of_way(const Combination& of, std::uin
 }
 
 // Of a frame in any placement.
-std::uint64_t Search::Space::waitless_cycles(const Combination& of) {
+std::uint64_t Search::Space::waitless_cycles(Combination& of) {
   const auto configs = ssram_configs(of.board);
   const bool is_one = std::all_of(configs.begin(), configs.end(), [&](const auto& bank) {
     return memory::read_latency_cycles(bank) == memory::read_latency_cycles(configs.front());
@@ -349,7 +349,7 @@ std::uint64_t Search::Space::waitless_cycles(const Combination& of) {
   return least;
 }
 
-std::uint64_t Search::Space::least_cycles(const Combination& of, const Placements::Group& group) {
+std::uint64_t Search::Space::least_cycles(Combination& of, const Placements::Group& group) {
   std::uint64_t sum = 0;
   std::uint64_t least = UINT64_MAX;
   for (const std::uint32_t way : group.ways) {
@@ -361,9 +361,9 @@ std::uint64_t Search::Space::least_cycles(const Combination& of, const Placement
   return sum * of.turns + least * (of.run.frames % turn);
 }
 
-Combination::OfUse Search::Space::facts_of(const BoardConfig& board) {
+Combination::OfUse Search::Space::facts_of(const Combination& of, const BoardConfig& board) {
   Combination::OfUse facts = {board, figures_without_simulation(board), {}, {}};
-  const Known known = {facts.board, last_.run, facts.figures};
+  const Known known = {facts.board, of.run, facts.figures};
   for (Expression& goal : goals_)
     facts.goals.push_back(goal.is_fixed() ? std::optional(goal.range(known)) : std::nullopt);
   for (Expression& requirement : requirements_)
@@ -371,19 +371,18 @@ Combination::OfUse Search::Space::facts_of(const BoardConfig& board) {
   return facts;
 }
 
-// Of the combination that was asked for last.
-const Combination::OfUse& Search::Space::of_use(std::uint32_t use) {
-  last_.of_use.resize(last_.placements->uses());
-  std::unique_ptr<Combination::OfUse>& facts = last_.of_use[use];
+const Combination::OfUse& Search::Space::of_use(Combination& of, std::uint32_t use) {
+  of.of_use.resize(of.placements->uses());
+  std::unique_ptr<Combination::OfUse>& facts = of.of_use[use];
   if (!facts)
     facts = std::make_unique<Combination::OfUse>(
-        facts_of(last_.placements->placed(last_.board, last_.placements->first_of_use(use))));
+        facts_of(of, of.placements->placed(of.board, of.placements->first_of_use(use))));
   return *facts;
 }
 
-Search::Space::Estimate Search::Space::estimate(const Combination::OfUse& facts, std::uint64_t least_cycles,
-                                                bool has_energy) {
-  const PointRun& run = last_.run;
+Search::Space::Estimate Search::Space::estimate(const Combination& of, const Combination::OfUse& facts,
+                                                std::uint64_t least_cycles, bool has_energy) {
+  const PointRun& run = of.run;
   Known now = {facts.board, run, facts.figures};
   if (!run.camera) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -408,12 +407,12 @@ Search::Space::Estimate Search::Space::estimate(const Combination::OfUse& facts,
   return found;
 }
 
-Search::Space::Estimate Search::Space::estimate(const Combination& of) {
+Search::Space::Estimate Search::Space::estimate(Combination& of) {
   Estimate all;
   all.may_meet = false;
   const std::uint64_t least = waitless_cycles(of) * of.run.frames;
   for (std::uint32_t use = 0; use < of.placements->uses(); ++use) {
-    const Estimate one = estimate(of_use(use), least, of.takes_alike);
+    const Estimate one = estimate(of, of_use(of, use), least, of.takes_alike);
     if (!one.may_meet) continue;
     for (std::size_t goal = 0; goal < goals(); ++goal)
       all.best[goal] = all.may_meet ? std::max(all.best[goal], one.best[goal]) : one.best[goal];
@@ -422,21 +421,21 @@ Search::Space::Estimate Search::Space::estimate(const Combination& of) {
   return all;
 }
 
-Search::Space::Estimate Search::Space::estimate(const Combination& of, const Placements::Group& group,
+Search::Space::Estimate Search::Space::estimate(Combination& of, const Placements::Group& group,
                                                 std::uint64_t placement) {
   const std::uint64_t least = of.run.camera ? 0 : least_cycles(of, group);
-  if (!is_alone(of)) return estimate(of_use(group.use), least, true);
-  return estimate(facts_of(of.placements->placed(of.board, placement)), least, true);
+  if (!is_alone(of)) return estimate(of, of_use(of, group.use), least, true);
+  return estimate(of, facts_of(of, of.placements->placed(of.board, placement)), least, true);
 }
 
-std::vector<std::string> Search::Space::result_keys(const Combination& of, const Placements::Group& group,
+std::vector<std::string> Search::Space::result_keys(Combination& of, const Placements::Group& group,
                                                     std::uint64_t placement) {
   if (of.is_full) return {result_key(make_point(0, of.placements->placed(of.board, placement), of.run).hash)};
   std::vector<std::string> keys;
   if (of.is_by_ways) {
-    last_.key_of_way.resize(of.placements->ways());
+    of.key_of_way.resize(of.placements->ways());
     for (const std::uint32_t way : group.ways) {
-      std::string& key = last_.key_of_way[way];
+      std::string& key = of.key_of_way[way];
       if (key.empty()) key = result_key(core_cycles_key(of.placements->board_of_way(of.board, way)));
       keys.push_back(key);
     }
@@ -446,7 +445,7 @@ std::vector<std::string> Search::Space::result_keys(const Combination& of, const
                                  of.run.frames))};
 }
 
-std::vector<double> Search::Space::simulate(const Combination& of, const Placements::Group& group,
+std::vector<double> Search::Space::simulate(Combination& of, const Placements::Group& group,
                                             std::uint64_t placement, std::size_t which) {
   if (of.is_by_ways)
     return {static_cast<double>(model_.cycles(of.placements->board_of_way(of.board, group.ways[which]), 1))};
@@ -480,12 +479,12 @@ std::vector<double> Search::Space::totals(const Combination& of,
   return {sum * static_cast<double>(of.turns)};
 }
 
-std::optional<std::vector<Range>> Search::Space::values(const Combination& of, const Placements::Group& group,
+std::optional<std::vector<Range>> Search::Space::values(Combination& of, const Placements::Group& group,
                                                         std::uint64_t placement,
                                                         const std::vector<std::vector<double>>& results) {
   std::optional<Combination::OfUse> own;
-  if (is_alone(of)) own = facts_of(of.placements->placed(of.board, placement));
-  const Combination::OfUse& facts = own ? *own : of_use(group.use);
+  if (is_alone(of)) own = facts_of(of, of.placements->placed(of.board, placement));
+  const Combination::OfUse& facts = own ? *own : of_use(of, group.use);
   Known now = {facts.board, of.run, facts.figures};
   const std::vector<double> all = totals(of, results);
   double uncertainty = 0;
@@ -537,9 +536,7 @@ struct Search::Heap {
 };
 
 Search::Search(const Plan& plan, const SearchWishes& wishes, const BoardModel& model, unsigned processes)
-    : plan_(plan),
-      wishes_(wishes),
-      model_(model),
+    : wishes_(wishes),
       processes_(processes),
       space_(std::make_unique<Space>(plan, wishes_, model)),
       heap_(std::make_unique<Heap>()) {
@@ -634,7 +631,7 @@ bool Search::assess(const std::function<bool()>& keep_going) {
     Bytes bytes;
     const std::size_t end = std::min(verdicts_.size(), (piece + 1) * kCombinationsOfPiece);
     for (std::size_t number = piece * kCombinationsOfPiece; number < end; ++number) {
-      const Combination& its = space_->combination(number);
+      Combination& its = space_->combination(number);
       Verdict verdict = its.verdict;
       Space::Estimate estimate;
       if (verdict == Verdict::kUnknown) {
@@ -704,7 +701,7 @@ bool Search::step(const std::function<bool()>& keep_going) {
     bytes.put_numbers(placements);
   };
   // In another process: finds the values of placements, and says the results of simulations.
-  const auto examine = [&](const Combination& its, const Placements::Group& group, std::uint32_t placement,
+  const auto examine = [&](Combination& its, const Placements::Group& group, std::uint32_t placement,
                            const std::vector<std::uint32_t>& placements, Bytes& bytes) {
     const std::vector<std::string> keys = space_->result_keys(its, group, placement);
     std::vector<std::vector<double>> results;
@@ -726,7 +723,7 @@ bool Search::step(const std::function<bool()>& keep_going) {
   const auto work = [&](std::size_t piece) {
     const Node& node = chosen[piece];
     Bytes bytes;
-    const Combination& its = space_->combination(node.combination);
+    Combination& its = space_->combination(node.combination);
     const std::vector<Placements::Group>& groups = its.placements->groups();
     if (node.placement != Node::kAll) {
       examine(its, groups[node.group], node.placement, {node.placement}, bytes);
@@ -815,7 +812,7 @@ bool Search::run(const std::function<bool(const SearchState& state)>& keep_going
 }
 
 Search::Board Search::board(const BoardNumber& number) {
-  const Combination& its = space_->combination(number.combination);
+  Combination& its = space_->combination(number.combination);
   if (its.verdict == Verdict::kImpossible) return {std::nullopt, its.run, its.reason};
   return {its.placements->placed(its.board, number.placement), its.run, ""};
 }
@@ -832,7 +829,7 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
   if (!places && wishes_.most_banks > 0 && banks > wishes_.most_banks)
     rules.push_back(fmt::format("it uses {} banks, and may use {}", banks, wishes_.most_banks));
   constexpr std::uint64_t kNoNumber = UINT64_MAX;
-  const Combination& its = space_->take(kNoNumber, std::move(reading.board), run, rules, places);
+  Combination& its = space_->take(kNoNumber, std::move(reading.board), run, rules, places);
   Judgement found;
   found.refused = its.verdict == Verdict::kExcluded ? "left out by where" : its.reason;
   if (!found.refused.empty()) return found;
@@ -880,7 +877,7 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
   return found;
 }
 
-std::vector<Search::Examined> Search::examined(const Combination& its) {
+std::vector<Search::Examined> Search::examined(Combination& its) {
   std::vector<Examined> found;
   std::map<std::tuple<std::string, std::uint32_t, std::vector<double>>, std::size_t>
       known;  // by fate, use, results
@@ -934,7 +931,7 @@ void Search::certify(const Certificate& certificate) {
     Bytes bytes;
     const std::size_t end = std::min(asked.size(), (piece + 1) * kCombinationsOfPiece);
     for (std::size_t i = piece * kCombinationsOfPiece; i < end; ++i) {
-      const Combination& its = space_->combination(asked[i]);
+      Combination& its = space_->combination(asked[i]);
       bytes.put_text(its.reason);
       const std::vector<Examined> all =
           its.verdict == Verdict::kImpossible ? std::vector<Examined>() : examined(its);

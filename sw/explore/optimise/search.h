@@ -169,13 +169,11 @@ class Search {
   bool step(const std::function<bool()>& keep_going);
   void add_to_front(const std::vector<Range>& values, std::uint64_t combination,
                     const std::vector<std::uint32_t>& placements);
-  std::vector<Examined> examined(const Combination& its);
+  std::vector<Examined> examined(Combination& its);
   bool beats(const FrontPoint& point, const double* best) const;
   bool is_dominated(const double* best) const;
 
-  const Plan& plan_;
   SearchWishes wishes_;
-  const BoardModel& model_;
   unsigned processes_;
   std::unique_ptr<Space> space_;
   std::unique_ptr<Heap> heap_;

@@ -109,7 +109,10 @@ std::vector<std::string> Plan::varied() const {
 }
 
 Point Plan::point(std::uint64_t number) const {
-  const auto [draft, reading, run] = read(number);
+  const ReadPoint made = read(number);
+  const platform::BoardDraft& draft = made.draft;
+  const platform::BoardDraft::Reading& reading = made.reading;
+  const PointRun& run = made.run;
   std::string rules;
   for (const Diagnostic& problem : reading.problems) rules += (rules.empty() ? "" : "; ") + problem.text;
   if (!rules.empty()) return impossible_point(number, draft.to_yaml(), reading.board, run, rules);
@@ -117,8 +120,7 @@ Point Plan::point(std::uint64_t number) const {
     return impossible_point(number, to_yaml(reading.board), reading.board, run,
                             fmt::format("{}: {}", path, problem));
   };
-  if (const auto problem = tables_problem(reading.board))
-    return impossible(kCalibrationPath, *problem);
+  if (const auto problem = tables_problem(reading.board)) return impossible(kCalibrationPath, *problem);
   if (const auto problem = pairs_problem(reading.board)) return impossible(kPairsPath, *problem);
   return make_point(number, reading.board, run);
 }
