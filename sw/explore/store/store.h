@@ -67,9 +67,9 @@ std::string bank_names_problem(const std::string& one, const std::string& other)
 // Writes results of points to an SQLite file. Table `points` has one row for each point, table `blame`
 // several. Table `columns` has the name, unit and meaning of each column of `points`, whether it is a key of
 // board or run, and whether points differ in it (`varied`; NULL until merge_stores() has written the file).
-// View `plain` is `points` under names that need no quotes, as matcher_window. A point is stored completely or
-// not at all, whatever ends the process. Several processes may add points at the same time. Member functions
-// throw DatabaseError. Must not be used across fork().
+// View `plain` is `points` under names that need no quotes, as matcher_window. A point is stored completely
+// or not at all, whatever ends the process. Several processes may add points at the same time. Member
+// functions throw DatabaseError. Must not be used across fork().
 class Store {
  public:
   // Opens the file, or makes it. Throws if it holds points of another version of the program.
