@@ -18,8 +18,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "sw/cli"))
 import completion  # noqa: E402
 
 COMMANDS = (
-    "run check boards keys bounds explain calibrate sweep merge allocate plot conflicts diff diagram report "
-    "worker"
+    "run check boards keys bounds explain calibrate sweep optimise merge allocate plot conflicts diff diagram "
+    "report worker"
 ).split()
 SMALL_KEYS = "{image.width: 32, image.height: 24}"
 NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")
@@ -386,6 +386,7 @@ class Outputs(ProgramTest):
         of_folders = (["conflicts", *scene, "--out"], ["plot", self.store, "--out"])
         commands = [(ending, functools.partial(self.command, ending)) for ending in self.writers]
         for words in (self.sweep, ["sweep", "--launcher", "slurm", *self.sweep[1:]], ["run", *scene, "--out"],
+                      ["optimise", *scene[:-1], "--minimise", "pins", "--out"],
                       ["allocate", *scene[:-1], "--banks", "1", "--out"], *of_folders):
             commands.append(("", lambda path, words=words: [*words, path]))
         commands += [("", lambda path: ["merge", path, self.store]),
