@@ -153,7 +153,7 @@ connection = sqlite3.connect(sys.argv[1], isolation_level=None)
 connection.execute("PRAGMA cache_size = 1")
 connection.execute("BEGIN")
 connection.execute("DELETE FROM points")
-connection.execute("UPDATE keys SET name = name || 'x'")
+connection.execute("UPDATE columns SET name = name || 'x'")
 os._exit(0)
 """
 
