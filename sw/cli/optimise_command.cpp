@@ -71,7 +71,8 @@ struct OptimiseOptions : Options {
       Option(this, "--stripes", "M", "Each buffer in one bank, or striped over up to M",
              {number<int>("1..16", [](int n) { return n >= 1 && n <= 16; }), goes_with(banks, "N")});
   Option source = Option(this, "--source", "camera|preloaded",
-                         "The whole computer, or the core alone, the default; a plan says it in run.source",
+                         "The whole computer, the default where a goal or condition needs it, or the "
+                         "core alone; a plan says it in run.source",
                          {one_of({"camera", "preloaded"})});
   Option calibration = Option(this, "--calibration", "F", "The tables, in place of the identity");
   Option why = Option(this, "--why", "KEY=VALUE",
@@ -114,10 +115,23 @@ bool is_plan(const std::string& name, const std::string* text) {
   }
 }
 
+// Whether a goal or a condition names a figure that only a whole computer has.
+bool names_computer(const OptimiseOptions& options) {
+  for (const Option* const option : {&options.requirements, &options.maxima, &options.minima}) {
+    for (const std::string& text : option->texts()) {
+      for (const char* const figure : {"frames_per_second.steady", "frames_per_second.system", "lost_pixels"})
+        if (text.find(figure) != std::string::npos) return true;
+    }
+  }
+  return false;
+}
+
 // A plan that varies the usual knobs of a board: those with which the paper's board and its relatives differ.
 std::string plan_of_board(const std::string& name, const BoardConfig& board, const OptimiseOptions& options) {
-  std::string text = fmt::format("board: {}\nrun: {{source: {}}}\n", files::shell_word(name),
-                                 options.source.is_given() ? options.source.text() : "preloaded");
+  const std::string source = options.source.is_given() ? options.source.text()
+                             : names_computer(options) ? "camera"
+                                                       : "preloaded";
+  std::string text = fmt::format("board: {}\nrun: {{source: {}}}\n", files::shell_word(name), source);
   const int disparities = board.matcher.disparities;
   text += "vary:\n";
   text += fmt::format("  matcher.units: [all, {}, {}]\n", (disparities + 1) / 2, (disparities + 3) / 4);

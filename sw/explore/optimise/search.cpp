@@ -28,6 +28,7 @@ using platform::BoardConfig;
 constexpr std::size_t kMostGoals = 8;
 constexpr const char* kSteady = "frames_per_second.steady";
 constexpr const char* kUncertainty = "frames_per_second.steady_uncertainty";
+constexpr const char* kLostPixels = "lost_pixels";
 constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
 constexpr std::size_t kPieces = 32;               // for each process, of a round
 constexpr std::size_t kRunsOfComputers = 2;       // the same, of a round with whole computers
@@ -246,9 +247,15 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   for (const std::string& name : without) needed.erase(name);
   for (const std::string& name : needed)
     needs_all_ = needs_all_ || std::count(core_figures().begin(), core_figures().end(), name) == 0;
-  if (needed.count(kSteady) > 0) needed.insert(kUncertainty);
+  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kLostPixels});
   needed_ = {needed.begin(), needed.end()};
   needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
+  const std::vector<std::string> varied = plan.varied();
+  const bool has_computer =
+      plan.run().camera || std::count(varied.begin(), varied.end(), std::string(kSourcePath)) > 0;
+  if (needed.count(kSteady) > 0 && !has_computer)
+    throw platform::BoardError(
+        {{plan.path(), fmt::format("{}: of a whole computer: give {}: camera", kSteady, kSourcePath)}});
 }
 
 Combination& Search::Space::combination(std::uint64_t number) {
@@ -500,6 +507,7 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
       now.others[name] = Range::of(value);
   }
   if (const auto steady = now.others.find(kSteady); steady != now.others.end() && of.run.camera) {
+    if (now.range(kLostPixels).least > 0) return std::nullopt;  // the bound is one of whole pictures
     const double rate = steady->second.least;
     const double bound = model_.steady_bound(facts.board);
     steady->second = {rate - uncertainty, std::max(rate - uncertainty, std::min(rate + uncertainty, bound))};
@@ -861,7 +869,7 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
           results.push_back(space_->simulate(its, group, placement, i));
         const auto values = space_->values(its, group, placement, results);
         if (!values) {
-          found.unmet = "all requirements, as its simulation shows";
+          found.unmet = "all requirements, or loses pixels, as its simulation shows";
           continue;
         }
         Values best{};

@@ -18,8 +18,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "sw/cli"))
 import completion  # noqa: E402
 
 COMMANDS = (
-    "run check boards keys bounds explain calibrate sweep optimise merge allocate plot conflicts diff diagram "
-    "report worker"
+    "run check boards keys bounds explain calibrate sweep optimise merge allocate plot conflicts diff "
+    "diagram report worker"
 ).split()
 SMALL_KEYS = "{image.width: 32, image.height: 24}"
 NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")
