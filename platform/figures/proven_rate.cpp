@@ -166,7 +166,9 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
   const double service = std::min(1 / posted_word, posted / (round + dma));
   const double spare = to_host ? service : service - rate;
   if (spare <= 0) return std::nullopt;
-  const double posting = (posted + (to_host ? 0 : behind) + open) / spare;
+  constexpr double kPostedWrites = 4;  // that start the core
+  const double posting =
+      (posted + (to_host ? 0 : behind) + kPostedWrites * (open + service * round)) / spare;
 
   std::size_t pages = 0;  // that arm a capture
   bool is_striped = false;
@@ -177,7 +179,7 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
     is_striped = is_striped || most > 1;
   }
   Times times;
-  times.answer = 2 * ((23 + static_cast<double>(pages)) * round + drain + 4 * posting);
+  times.answer = 2 * ((23 + static_cast<double>(pages)) * round + drain + posting);
   times.strobe = drain;
   const double cut = std::max(1.0, timer - capture_wait) * width;
   const double attempts = 1 + std::ceil(fifo / (is_striped ? std::min(cut, board.image.width / 4.0) : cut));
