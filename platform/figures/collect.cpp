@@ -8,6 +8,7 @@
 #include "platform/config/buffer_layout.h"
 #include "platform/config/computer_parts.h"
 #include "platform/figures/audit.h"
+#include "platform/figures/proven_rate.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -261,6 +262,9 @@ Statistics collect_statistics(const BoardConfig& config, const Tables& tables, c
   add_system_bound(config, accesses, true, of_turns);
   statistics.bound.system = of_turns.system;
   statistics.bound.system_limited_by = of_turns.system_limited_by;
+  if (whole_pictures)
+    statistics.frames_per_second.proven =
+        proven_rate(config, accesses, statistics.frame_cycles, *of_turns.system);
 
   Audit audit;
   audit.equal("frames delivered", deliveries.size(), "frames of the core", statistics.frames);

@@ -85,12 +85,22 @@ struct SteadyRate {
   std::uint64_t frames = 0;  // of the window
 };
 
+// What contract 7.12 proves of the rate in the long run, while captures lose no pixels, in frames per second.
+struct ProvenRate {
+  std::optional<double> exact;                 // nullopt where `least` and `most` differ
+  std::optional<std::uint64_t> deliveries;     // of `exact`: so many
+  std::optional<std::uint64_t> camera_frames;  // in so many
+  double least = 0;
+  double most = 0;
+};
+
 // The frame rates of a run.
 struct FramesPerSecond {
   double core = 0;  // frames / the time that the core runs
   // The other rates belong to a whole computer; nullopt for a board without a computer.
   std::optional<double> system;      // deliveries / time of the last delivery
   std::optional<SteadyRate> steady;  // nullopt where fewer than 2 * L frames are delivered
+  std::optional<ProvenRate> proven;  // nullopt where fewer than L frames are delivered, or pixels are lost
 };
 
 // Upper bounds for the rates of FramesPerSecond, and the resource that sets each of them. Those of a run are

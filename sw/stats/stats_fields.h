@@ -129,11 +129,20 @@ constexpr auto fields_of(const SteadyRate* /*type*/) {
       Field{"steady_uncertainty", &SteadyRate::uncertainty, "what the window of steady leaves open"});
 }
 
+constexpr auto fields_of(const ProvenRate* /*type*/) {
+  return std::tuple(
+      Field{"exact", &ProvenRate::exact, "in the long run, where it is proven", stats::above_zero},
+      Field{"exact_deliveries", &ProvenRate::deliveries, "exact: so many in exact_camera_frames"},
+      Field{"exact_camera_frames", &ProvenRate::camera_frames, "exact: exact_deliveries in so many"},
+      Field{"exact_least", &ProvenRate::least, "proven lower bound of the rate in the long run"},
+      Field{"exact_most", &ProvenRate::most, "proven upper bound of the rate in the long run"});
+}
+
 constexpr auto fields_of(const FramesPerSecond* /*type*/) {
   return std::tuple(
       Field{"core", &FramesPerSecond::core, "frames / the time in which the core runs", stats::above_zero},
       Field{"system", &FramesPerSecond::system, "deliveries / time of the last delivery", stats::above_zero},
-      stats::Merged{&FramesPerSecond::steady});
+      stats::Merged{&FramesPerSecond::steady}, stats::Merged{&FramesPerSecond::proven});
 }
 
 constexpr auto fields_of(const Bound* /*type*/) {
