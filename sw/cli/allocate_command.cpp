@@ -130,12 +130,14 @@ void take_best(explore::Search& search, AllocationReport& report) {
     const explore::Search::Board first = search.board(point.first.front());
     const std::map<std::string, double> figures = search.results_of(point.first.front());
     RatedAllocations rated = {point.boards, *first.board, {}, point.values[0]};
-    if (report.run.camera) {
+    if (report.run.camera && point.values[0].is_exact()) {
+      rated.rate = {point.values[0].least, 0, true, 0};
+    } else if (report.run.camera) {
       rated.rate = {figures.at("frames_per_second.steady"),
-                    figures.at("frames_per_second.steady_uncertainty"), 0};
+                    figures.at("frames_per_second.steady_uncertainty"), false, 0};
     } else {
       const auto latency = static_cast<std::uint64_t>(report.board.fpga.pipeline_latency_cycles);
-      rated.rate = {figures.at("frames_per_second.core"), 0,
+      rated.rate = {figures.at("frames_per_second.core"), 0, true,
                     static_cast<std::uint64_t>(figures.at("cycles")) + report.run.frames * latency};
     }
     const auto best = std::find_if(report.all.begin(), report.all.end(), [&](const BestAllocations& one) {

@@ -33,7 +33,8 @@ const AllocationRate& rate_of(const BestAllocations& best) { return best.ties.fr
 
 std::string rate_text(const AllocationReport& report, const AllocationRate& its, int decimals = 3) {
   const std::string rate = fmt::format("{:.{}f}", its.frames_per_second, decimals);
-  return report.run.camera ? fmt::format("{} ± {:.{}f}", rate, its.uncertainty, decimals) : rate;
+  const bool is_open = report.run.camera && !its.is_exact;
+  return is_open ? fmt::format("{} ± {:.{}f}", rate, its.uncertainty, decimals) : rate;
 }
 
 // The values of --set that give a board the allocation of `board`: "allocation.left_lut=bank0", ..
@@ -79,10 +80,11 @@ std::string space_text(const AllocationReport& report) {
   if (!report.run.camera) return text;
   const std::uint64_t turn = platform::allocation_period_frames(report.board);
   const std::uint64_t window = report.run.frames - turn;
-  return text + fmt::format(
-                    "frames/s: steady, over {} frames, ± what these leave open (a tenth of it with --frames "
-                    "{});\nan allocation that loses a pixel does not count\n",
-                    window, 10 * window + turn);
+  return text +
+         fmt::format(
+             "frames/s: in the long run, where it is proven; else steady, over {} frames, ± what these leave "
+             "open\n(a tenth of it with --frames {}); an allocation that loses a pixel does not count\n",
+             window, 10 * window + turn);
 }
 
 std::string table(const AllocationReport& report, const std::optional<BestOfAll>& top) {
@@ -171,7 +173,10 @@ std::string command_text(const AllocationReport& report, const std::optional<Bes
   if (!top) return "";
   std::string text =
       fmt::format("This command runs the best allocation, and prints {} frames/s as {}:\n  {}\n",
-                  rate_text(report, top->fastest->rate), report.run.camera ? "steady" : "core",
+                  rate_text(report, top->fastest->rate),
+                  !report.run.camera            ? "core"
+                  : top->fastest->rate.is_exact ? "long run"
+                                                : "steady",
                   files::shell_command(command_of(report, top->fastest->first)));
   if (report.written) text += *report.written + ": the board with the best allocation\n";
   return text;
@@ -180,6 +185,7 @@ std::string command_text(const AllocationReport& report, const std::optional<Bes
 // A rate as stats.json names it.
 Json rate_document(const AllocationReport& report, const AllocationRate& rate) {
   if (!report.run.camera) return {{"core", rate.frames_per_second}};
+  if (rate.is_exact) return {{"exact", rate.frames_per_second}};
   return {{"steady", rate.frames_per_second}, {"steady_uncertainty", rate.uncertainty}};
 }
 

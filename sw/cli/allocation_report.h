@@ -18,6 +18,7 @@ namespace stereotlm::cli {
 struct AllocationRate {
   double frames_per_second = 0;
   double uncertainty = 0;    // of a steady rate
+  bool is_exact = false;     // the steady rate is proven
   std::uint64_t cycles = 0;  // of the core, of all frames, with the latency of the pipeline
 };
 

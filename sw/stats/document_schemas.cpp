@@ -20,10 +20,11 @@ Schema or_not_compared(const Schema& part) {
 }
 
 Schema allocate_schema() {
-  Schema rates = either(object_of({{"core", any_number()}}),
+  Schema rates = either(either(object_of({{"core", any_number()}}), object_of({{"exact", any_number()}})),
                         object_of({{"steady", any_number()}, {"steady_uncertainty", amount()}}));
   rates["description"] =
-      "A rate as stats.json names it: of the core alone, or the steady rate of the whole computer.";
+      "A rate as stats.json names it: of the core alone; of the whole computer the exact rate of the long "
+      "run, where it is proven, else the steady one.";
   Schema sets = list_of(with_pattern("^allocation\\.[a-z_]+="), 3);
   sets["description"] = "Values of --set that give the board this allocation.";
   const Schema best = object_of({

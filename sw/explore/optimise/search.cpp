@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <numeric>
 #include <queue>
 #include <stdexcept>
 #include <utility>
@@ -137,6 +138,7 @@ struct Combination {
   FigureRanges accuracy;
   std::vector<std::optional<std::uint64_t>> least_cycles_of_way;
   std::vector<std::string> key_of_way;
+  std::vector<std::optional<std::uint64_t>> cycles_of_way;
   bool takes_alike = false;  // all banks take the same for an access
   bool is_full = false;      // figures beyond the cycles of the core are needed
   bool is_by_ways = false;   // a frame for each way is all that is simulated
@@ -194,8 +196,11 @@ class Search::Space {
   bool is_alone(const Combination& of) const { return of.is_full || (needs_energy_ && !of.takes_alike); }
   const Combination::OfUse& of_use(Combination& of, std::uint32_t use);
   Combination::OfUse facts_of(const Combination& of, const BoardConfig& board);
+  // `most_steady`: of a whole computer, an upper bound of its rate.
   Estimate estimate(const Combination& of, const Combination::OfUse& facts, std::uint64_t least_cycles,
-                    bool has_energy);
+                    bool has_energy, double most_steady);
+  // Of a whole computer that loses no pixels.
+  Range long_run_rate(Combination& of, std::uint64_t placement, const BoardConfig& placed);
   std::uint64_t least_cycles_of_way(Combination& of, std::uint32_t way, bool waitless_alone);
   std::uint64_t waitless_cycles(Combination& of);
 
@@ -444,7 +449,8 @@ const Combination::OfUse& Search::Space::of_use(Combination& of, std::uint32_t u
 }
 
 Search::Space::Estimate Search::Space::estimate(const Combination& of, const Combination::OfUse& facts,
-                                                std::uint64_t least_cycles, bool has_energy) {
+                                                std::uint64_t least_cycles, bool has_energy,
+                                                double most_steady) {
   const PointRun& run = of.run;
   Known now = {facts.board, run, facts.figures};
   if (!run.camera) {
@@ -453,7 +459,7 @@ Search::Space::Estimate Search::Space::estimate(const Combination& of, const Com
          model_.figures_of_cycles(facts.board, run.frames, least_cycles, needs_energy_ && has_energy))
       now.others[name] = name == "frames_per_second.core" ? Range{0, value} : Range{value, kNone};
   }
-  if (run.camera) now.others[kSteady] = {0, model_.steady_bound(facts.board)};
+  if (run.camera) now.others[kSteady] = {0, most_steady};
   Estimate found;
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];
@@ -473,9 +479,10 @@ Search::Space::Estimate Search::Space::estimate(const Combination& of, const Com
 Search::Space::Estimate Search::Space::estimate(Combination& of) {
   Estimate all;
   all.may_meet = false;
-  const std::uint64_t least = waitless_cycles(of) * of.run.frames;
+  const std::uint64_t least = waitless_cycles(of);
+  const double most_steady = of.board.fpga.clock_mhz * 1e6 / static_cast<double>(least);
   for (std::uint32_t use = 0; use < of.placements->uses(); ++use) {
-    const Estimate one = estimate(of, of_use(of, use), least, of.takes_alike);
+    const Estimate one = estimate(of, of_use(of, use), least * of.run.frames, of.takes_alike, most_steady);
     if (!one.may_meet) continue;
     for (std::size_t goal = 0; goal < goals(); ++goal)
       all.best[goal] = all.may_meet ? std::max(all.best[goal], one.best[goal]) : one.best[goal];
@@ -487,8 +494,24 @@ Search::Space::Estimate Search::Space::estimate(Combination& of) {
 Search::Space::Estimate Search::Space::estimate(Combination& of, const Placements::Group& group,
                                                 std::uint64_t placement) {
   const std::uint64_t least = of.run.camera ? 0 : least_cycles(of, group);
-  if (!is_alone(of)) return estimate(of, of_use(of, group.use), least, true);
-  return estimate(of, facts_of(of, of.placements->placed(of.board, placement)), least, true);
+  if (!is_alone(of)) return estimate(of, of_use(of, group.use), least, true, 0);
+  const Combination::OfUse own = facts_of(of, of.placements->placed(of.board, placement));
+  const double most_steady = of.run.camera ? long_run_rate(of, placement, own.board).most : 0;
+  return estimate(of, own, least, true, most_steady);
+}
+
+Range Search::Space::long_run_rate(Combination& of, std::uint64_t placement, const BoardConfig& placed) {
+  std::vector<std::uint64_t> frame_cycles;
+  const std::size_t turn = of.placements->turn();
+  for (std::size_t frame = 0; frame < turn && frames_are_independent(placed); ++frame) {
+    const std::uint32_t way = of.placements->way(placement, frame);
+    of.cycles_of_way.resize(of.placements->ways());
+    std::optional<std::uint64_t>& cycles = of.cycles_of_way[way];
+    if (!cycles) cycles = model_.frame_cycles(of.placements->board_of_way(of.board, way), 1).front();
+    frame_cycles.push_back(*cycles);
+  }
+  if (frame_cycles.empty()) frame_cycles = model_.frame_cycles(placed, turn);
+  return model_.long_run_rate(placed, frame_cycles);
 }
 
 std::vector<std::string> Search::Space::result_keys(Combination& of, const Placements::Group& group,
@@ -511,9 +534,13 @@ std::vector<std::string> Search::Space::result_keys(Combination& of, const Place
 std::vector<double> Search::Space::simulate(Combination& of, const Placements::Group& group,
                                             std::uint64_t placement, std::size_t which) {
   if (of.is_by_ways)
-    return {static_cast<double>(model_.cycles(of.placements->board_of_way(of.board, group.ways[which]), 1))};
+    return {static_cast<double>(
+        model_.frame_cycles(of.placements->board_of_way(of.board, group.ways[which]), 1).front())};
   const BoardConfig placed = of.placements->placed(of.board, placement);
-  if (!of.is_full) return {static_cast<double>(model_.cycles(placed, of.run.frames))};
+  if (!of.is_full) {
+    const std::vector<std::uint64_t> cycles = model_.frame_cycles(placed, of.run.frames);
+    return {static_cast<double>(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0}))};
+  }
   const Figures figures = model_.simulate(make_point(0, placed, of.run));
   std::vector<double> values;
   for (const std::string& name : needed_) {
@@ -566,8 +593,10 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
     if (now.range(kLostPixels).least > 0) return std::nullopt;  // the bound is one of whole pictures
     const double rate = steady->second.least;
     const double uncertainty = now.range(kUncertainty).least;
-    const double bound = model_.steady_bound(facts.board);
-    steady->second = {rate - uncertainty, std::max(rate - uncertainty, std::min(rate + uncertainty, bound))};
+    const Range proven = long_run_rate(of, placement, facts.board);
+    const Range both = {std::max(rate - uncertainty, proven.least),
+                        std::min(rate + uncertainty, proven.most)};
+    steady->second = both.least <= both.most ? both : proven;
   }
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];

@@ -28,15 +28,18 @@ struct BoardModel {
   // A lower bound for the cycles of frame 0 of the core, with what its ports need of the banks that they
   // share.
   std::function<std::uint64_t(const platform::BoardConfig& board)> contended_cycles;
-  // The cycles of frames 0..frames-1 of the core.
-  std::function<std::uint64_t(const platform::BoardConfig& board, std::uint64_t frames)> cycles;
+  // The cycles of each of frames 0..frames-1 of the core alone.
+  std::function<std::vector<std::uint64_t>(const platform::BoardConfig& board, std::uint64_t frames)>
+      frame_cycles;
   // What follows from the board and its cycles: the figures of core_figures(), the energy only with
   // `has_energy`. More cycles give a lower rate and more energy.
   std::function<std::map<std::string, double>(const platform::BoardConfig& board, std::uint64_t frames,
                                               std::uint64_t cycles, bool has_energy)>
       figures_of_cycles;
-  // An upper bound for frames_per_second.steady of a whole computer, less its uncertainty.
-  std::function<double(const platform::BoardConfig& board)> steady_bound;
+  // What is proven of the rate of a whole computer in the long run, if it loses no pixels. `frame_cycles`: of
+  // a turn of the lists of the core alone.
+  std::function<Range(const platform::BoardConfig& board, const std::vector<std::uint64_t>& frame_cycles)>
+      long_run_rate;
   // All figures of a point.
   std::function<Figures(const Point& point)> simulate;
   // The accuracy_figures() over the pictures of the plan; a figure without a value is missing. Null if the

@@ -3,13 +3,14 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "platform/assembly/preloaded_system.h"
 #include "platform/figures/derived_figures.h"
+#include "platform/figures/proven_rate.h"
 #include "platform/figures/search_bounds.h"
 #include "sw/explore/optimise/key_effects.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -80,17 +81,17 @@ explore::BoardModel board_model(const platform::Tables* tables, PointQuality qua
   model.contended_cycles = [all](const BoardConfig& board) {
     return platform::least_frame_cycles(board, all->accesses(board), 0);
   };
-  model.cycles = [all](const BoardConfig& board, std::uint64_t frames) {
-    const std::vector<std::uint64_t> cycles =
-        platform::core_frame_cycles(board, all->patterns(board), frames);
-    return std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0});
+  model.frame_cycles = [all](const BoardConfig& board, std::uint64_t frames) {
+    return platform::core_frame_cycles(board, all->patterns(board), frames);
   };
   model.figures_of_cycles = [all](const BoardConfig& board, std::uint64_t frames, std::uint64_t cycles,
                                   bool has_energy) {
     return figures_of_cycles(board, frames, cycles, has_energy ? &all->accesses(board) : nullptr);
   };
-  model.steady_bound = [all](const BoardConfig& board) {
-    return platform::steady_bound(board, all->accesses(board));
+  model.long_run_rate = [all](const BoardConfig& board, const std::vector<std::uint64_t>& frame_cycles) {
+    const double bound = platform::steady_bound(board, all->accesses(board));
+    const auto proven = platform::proven_rate(board, all->accesses(board), frame_cycles, bound);
+    return proven ? explore::Range{proven->least, proven->most} : explore::Range{0, bound};
   };
   model.simulate = [simulator](const explore::Point& point) { return (*simulator)(point); };
   if (!quality.has_pictures()) return model;

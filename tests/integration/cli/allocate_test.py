@@ -73,7 +73,7 @@ def children_of(process):
 def rate_text(rates):
     """Rates of stats.json as they are printed."""
     if "steady" not in rates:
-        return f"{rates['core']:.3f}"
+        return f"{next(iter(rates.values())):.3f}"
     return f"{rates['steady']:.3f} ± {rates['steady_uncertainty']:.3f}"
 
 
@@ -103,7 +103,7 @@ class Allocate(ProgramTest):
 
     def pasted(self, said):
         """The words after `stereotlm run` of the command that the text ends with, as a shell reads them."""
-        command = re.search(r"prints (\S.*) frames/s as (?:core|steady):\n  (stereotlm run .*)\n", said)
+        command = re.search(r"prints (\S.*) frames/s as (?:core|long run|steady):\n  (stereotlm run .*)\n", said)
         return command[1], shlex.split(command[2])[2:]
 
     def query(self, store, *statements):
