@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <set>
@@ -41,17 +42,25 @@ class RandomSpace {
     places_ = below(5) != 0;
     parts_ = places_ && banks == 2 && below(2) == 0 ? 2 : 1;
     std::string names;
-    const std::vector<std::string> kinds = {
-        "{kind: zbt_pipelined, words: DEPTH}", "{kind: zbt_flow_through, words: DEPTH}",
-        "{kind: sync_burst, turnaround_cycles: 2, words: DEPTH}",
-        "{kind: qdr, words: DEPTH, energy: {access_pj: 700}}",
-        "{kind: sdram, words: DEPTH, cas_latency: 2, row_words: 16, internal_banks: 2, activate_cycles: 1, "
-        "precharge_cycles: 1, refresh_interval_cycles: 64, refresh_cycles: 3}"};
-    const std::size_t common = below(kinds.size());
+    // Most banks are of one kind; some of these differ from it in one key.
+    struct Kind {
+      const char* keys;
+      std::pair<const char*, const char*> values;
+    };
+    const std::vector<Kind> kinds = {
+        {"kind: zbt_pipelined, energy: {{access_pj: {}}}", {"400", "900"}},
+        {"kind: zbt_flow_through, energy: {{standby_mw: {}}}", {"100", "300"}},
+        {"kind: sync_burst, turnaround_cycles: {}", {"2", "5"}},
+        {"kind: qdr, energy: {{access_pj: {}}}", {"700", "300"}},
+        {"kind: sdram, cas_latency: 2, row_words: 16, internal_banks: 2, activate_cycles: 1, "
+         "precharge_cycles: {}, refresh_interval_cycles: 64, refresh_cycles: 3",
+         {"1", "6"}}};
+    const Kind& common = kinds[below(kinds.size())];
     for (std::size_t i = 0; i < banks; ++i) {
-      std::string kind = kinds[below(3) == 0 ? below(kinds.size()) : common];
-      kind.replace(kind.find("DEPTH"), 5, i > 0 && below(4) == 0 ? "300" : "4096");
-      names += fmt::format("{}b{}: {}", i == 0 ? "" : ", ", i, kind);
+      const Kind& kind = below(4) == 0 ? kinds[below(kinds.size())] : common;
+      const char* const value = i > 0 && below(3) == 0 ? kind.values.second : kind.values.first;
+      names += fmt::format("{}b{}: {{{}, words: {}}}", i == 0 ? "" : ", ", i,
+                           fmt::format(fmt::runtime(kind.keys), value), i > 0 && below(4) == 0 ? 300 : 4096);
     }
     const bool has_tables = below(3) != 0;
     const std::string images = parts_ == 2 || below(2) == 0 ? "b0" : "[b0, b0]";
@@ -335,6 +344,11 @@ TEST(RandomSearches, FindTheFrontOfBruteForce) {
   const char* const first = std::getenv("STEREOTLM_FIRST_SEED");
   for (std::uint64_t seed = first != nullptr ? std::stoull(first) : 1; seed <= spaces; ++seed) {
     const RandomSpace space(seed);
+    if (const char* const folder = std::getenv("STEREOTLM_SPACES")) {  // for check_search_test.py
+      const std::filesystem::path own = std::filesystem::path(folder) / std::to_string(seed);
+      write_file(own / "board.yaml", space.board);
+      write_file(own / "plan.yaml", space.plan);
+    }
     ASSERT_EQ(difference(seed, model), "") << "seed " << seed << '\n' << space.board << space.plan;
   }
 }
