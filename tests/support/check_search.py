@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Checks what a finished search (`stereotlm optimise PLAN --out DB`) says that it proves. It shares nothing with
-the search: combinations, placements and their symmetry, verdicts, bounds and dominance are computed anew from
-the plan and the board in DB. Figures of boards come from `stereotlm sweep`, cycles also from a plain loop.
+"""Checks what a finished search (`stereotlm optimise PLAN --out DB`) says that it proves. It shares nothing
+with the search: combinations, placements and their symmetry, verdicts, bounds and dominance are computed anew
+from the plan and the board in DB. Figures of boards come from `stereotlm sweep`, cycles also from a plain
+loop.
 
 usage: check_search.py DB PROGRAM [--loops N] [--boards N] [--seed S]
 """
@@ -31,6 +32,7 @@ ENERGY = "energy.memory_mj_per_frame"
 TIMING = {"sync_burst": ["turnaround_cycles"],
           "sdram": ["cas_latency", "row_words", "internal_banks", "activate_cycles", "precharge_cycles",
                     "refresh_interval_cycles", "refresh_cycles"]}
+yaml.SafeDumper.ignore_aliases = lambda *_: True
 NAMES = re.compile(r"'[^']*'|[A-Za-z_][\w.]*")
 
 
@@ -135,12 +137,13 @@ class Placements:
             extend(())
 
     def alike(self, placement):
-        """Placements with the same value have the same pins, area and, of frames that are independent, time."""
+        """What pins and area follow from, and, where frames are independent, the time."""
         used = sorted(self.kinds[bank] for bank in set(itertools.chain(*placement)))
         buffers = list(placement)
         lists = [[buffers.pop(0) for _ in range(length)] for length in self.lengths.values() if length]
-        frames = [renamed([each[frame % len(each)] for each in lists], self.kinds) for frame in range(self.turn)]
-        return tuple(used), tuple(map(len, placement)), tuple(sorted(frames))
+        frames = sorted(renamed([each[frame % len(each)] for each in lists], self.kinds)
+                        for frame in range(self.turn))
+        return tuple(used), tuple(map(len, placement)), tuple(frames)
 
     def put_into(self, board, at):
         banks = [[self.names[bank] for bank in parts] for parts in self.all[at]]
@@ -203,7 +206,7 @@ class Check:
 
     def placements(self, at):
         board = self.combination(at)[0]
-        key = json.dumps([board[name] for name in ("ssram", "allocation", "image")] + [board["fpga"].get("tables")])
+        key = json.dumps([*map(board.get, ("ssram", "allocation", "image")), board["fpga"].get("tables")])
         if key not in self.placements_of:
             self.placements_of[key] = Placements(board, self.most_banks, self.most_parts)
         return self.placements_of[key]
@@ -286,19 +289,19 @@ class Check:
 
     def cover(self):
         """Reads the verdicts and fates, and checks that each combination and each placement has one."""
-        self.size, self.verdicts, self.fates = math.prod(len(next(iter(axis.values()))) for axis in self.axes), {}, []
-        ends = -1
+        self.verdicts, self.fates, ends = {}, [], -1
         for first, last, verdict, _ in self.rows("SELECT * FROM parts ORDER BY first"):
             if first != ends + 1:
                 self.wrong("the parts are no cover", first, "behind", ends)
             ends = last
             self.verdicts.update((at, verdict) for at in range(first, last + 1))
-        if not ends + 1 == self.size == self.asked["combinations"]:
-            self.wrong("the parts are not all combinations", ends + 1, "of", self.size)
+        size = math.prod(len(next(iter(axis.values()))) for axis in self.axes)
+        if not ends + 1 == size == self.asked["combinations"]:
+            self.wrong("the parts are not all combinations", ends + 1, "of", size)
         spaces, covered = collections.defaultdict(list), collections.defaultdict(list)
         for space, numbers in self.rows("SELECT space, placements FROM spaces ORDER BY space, number"):
             spaces[space].append(numbers_of(numbers))
-        alike = functools.lru_cache(None)(lambda placements, space: self.check_space(placements, spaces[space]))
+        alike = functools.cache(lambda placements, space: self.check_space(placements, spaces[space]))
         for at, space, of, numbers, *fate in self.rows("SELECT * FROM examined"):
             placements, numbers = self.placements(at), numbers_of(numbers)
             groups = spaces[space] if self.most_banks else [[0]]
@@ -306,9 +309,9 @@ class Check:
             if self.most_banks and not alike(placements, space) and of == "groups":
                 self.wrong("a group of placements that are not alike", "combination", at)
             if of == "groups":
-                fpga, banks = self.combination(at)[0]["fpga"], [json.loads(kind)[0][0] for kind in placements.kinds]
-                if (fpga["arbitration"] == "round_robin" or {"sync_burst", "sdram"} & set(banks)
-                        or self.frames(at) % placements.turn or self.is_camera(at)):
+                kinds = {json.loads(kind)[0][0] for kind in placements.kinds} & {"sync_burst", "sdram"}
+                is_round_robin = self.combination(at)[0]["fpga"]["arbitration"] == "round_robin"
+                if kinds or is_round_robin or self.frames(at) % placements.turn or self.is_camera(at):
                     self.wrong("frames that depend on each other are taken one by one", "combination", at)
                 numbers = [number for group in numbers for number in groups[group]]
             self.fates.append((at, numbers, *fate))
@@ -338,13 +341,12 @@ class Check:
             them = [at for at, its in self.verdicts.items() if its == verdict]
             for at in self.random.sample(them, min(len(them), most // 10)):
                 placements = self.placements(at)
-                several = {}  # that have other fixed figures, or other latencies, than the others
-                for number in self.random.sample(range(len(placements.all)), len(placements.all)):
-                    several.setdefault(placements.alike(placements.all[number])[:2 if verdict == "bound" else 0],
-                                       number)
-                if not several and verdict == "impossible":
-                    several = {(): 0}
-                asked += [(at, number, verdict, None, "") for number in several.values()]
+                numbers = self.random.sample(range(len(placements.all)), len(placements.all)) or [0]
+                if verdict == "bound":  # one of each use of banks
+                    numbers = {placements.alike(placements.all[one])[:2]: one for one in numbers}.values()
+                else:
+                    numbers = numbers[:1]
+                asked += [(at, number, verdict, None, "") for number in numbers]
         for fate in ("unmet", "bound", "dominated", "front"):
             them = [(at, number, fate, *rest) for at, numbers, its, *rest in self.fates if its == fate
                     for number in (numbers if fate == "front" else
@@ -397,7 +399,8 @@ class Check:
                                 and not name.startswith("area.") and name not in ("used_banks", "pins")})
                 names = sorted({*names, UNCERTAINTY, "lost_pixels"}) if self.asks_steady else names
                 has_sdram = any("sdram" in kind for kind in self.placements(at).kinds)
-                is_full = not is_core or set(names) - {"cycles", RATE, ENERGY} or ENERGY in names and has_sdram
+                is_full = (not is_core or set(names) - {"cycles", RATE, ENERGY}
+                           or ENERGY in names and has_sdram)
                 expected = [row[name] or 0 for name in names] if is_full else [cycles]
                 if list(map(float, results.split())) != expected:
                     self.wrong("other results", board, results, expected)
@@ -429,7 +432,7 @@ class Check:
         if "front, not looked at" in self.notes:
             return
         listed = collections.defaultdict(list)
-        for point, *board in self.rows("SELECT point, combination, placement FROM front_boards ORDER BY 1, 2, 3"):
+        for point, *board, _ in self.rows("SELECT * FROM front_boards ORDER BY 1, 2, 3"):
             listed[point].append(tuple(board))
         for point, boards, config in self.rows("SELECT * FROM front"):
             if len(found[point]) != boards:
@@ -441,7 +444,7 @@ class Check:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__.split("usage")[0])
     parser.add_argument("database")
     parser.add_argument("program")
     parser.add_argument("--loops", type=int, default=200, help="runs of the plain loop, at most")

@@ -1,5 +1,5 @@
-"""The timing of the core (sections 1, 2, 7 and 8 of models/contract.md) as a plain loop over clock cycles, with
-the identity as tables. It shares nothing with the program."""
+"""The timing of the core (sections 1, 2, 7 and 8 of models/contract.md) as a plain loop over clock cycles,
+with the identity as tables. It shares nothing with the program."""
 
 LATENCY = {"zbt_pipelined": 2, "zbt_flow_through": 1, "sync_burst": 2, "qdr": 2}
 BUFFERS = ("left_image", "right_image", "disparity", "left_lut", "right_lut")
@@ -137,7 +137,8 @@ class Core:
                 self.at[name].append(where)
                 self.latencies[name].append(read_latency(banks[where[0][0]]))
         if self.joint:
-            self.at["right_lut"], self.latencies["right_lut"] = self.at["left_lut"], self.latencies["left_lut"]
+            for found in (self.at, self.latencies):
+                found["right_lut"] = found["left_lut"]
         self.now = 0
 
     def word(self, parts, row, column, row_words):
@@ -241,8 +242,3 @@ class Core:
                     taken[i].append(now)
         self.now = now + 1 + self.latency
         return self.now - start
-
-
-def frames_cycles(board, frames, is_waitless=False):
-    core = Core(board)
-    return [core.frame_cycles(frame, is_waitless) for frame in range(frames)]
