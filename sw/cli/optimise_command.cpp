@@ -169,7 +169,6 @@ Question question_of(const OptimiseOptions& options) {
       question.text = plan_of_board(name, board, options);
       const std::string file = platform::to_yaml(board);
       question.plan = explore::Plan::load(name, "board.yaml", &question.text, &file);
-      question.text += file;
       question.board_words = files::shell_word(name);
       for (const std::string& set : options.sets.texts())
         question.board_words += " --set " + files::shell_word(set);
@@ -191,7 +190,7 @@ Question question_of(const OptimiseOptions& options) {
 explore::SearchStore::Asked asked_of(const Question& question, const std::string& tables) {
   explore::SearchStore::Asked asked = {{"version", process::kVersion},
                                        {"plan", question.text},
-                                       {"board", question.plan->board_text()},
+                                       {"board", platform::to_yaml(question.plan->base().read())},
                                        {"pictures", question.plan->run().pairs},
                                        {"tables", tables}};
   std::string goals;

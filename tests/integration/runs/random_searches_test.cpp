@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <set>
@@ -41,28 +42,43 @@ class RandomSpace {
     places_ = below(5) != 0;
     parts_ = places_ && banks == 2 && below(2) == 0 ? 2 : 1;
     std::string names;
-    const std::vector<std::string> kinds = {
-        "{kind: zbt_pipelined, words: DEPTH}", "{kind: zbt_flow_through, words: DEPTH}",
-        "{kind: sync_burst, turnaround_cycles: 2, words: DEPTH}",
-        "{kind: qdr, words: DEPTH, energy: {access_pj: 700}}",
-        "{kind: sdram, words: DEPTH, cas_latency: 2, row_words: 16, internal_banks: 2, activate_cycles: 1, "
-        "precharge_cycles: 1, refresh_interval_cycles: 64, refresh_cycles: 3}"};
-    const std::size_t common = below(kinds.size());
+    // Most banks are of one kind; some of these differ from it in one key.
+    struct Kind {
+      const char* keys;
+      std::pair<const char*, const char*> values;
+    };
+    const std::vector<Kind> kinds = {
+        {"kind: zbt_pipelined, energy: {{access_pj: {}}}", {"400", "900"}},
+        {"kind: zbt_flow_through, energy: {{standby_mw: {}}}", {"100", "300"}},
+        {"kind: sync_burst, turnaround_cycles: {}", {"2", "5"}},
+        {"kind: qdr, energy: {{access_pj: {}}}", {"700", "300"}},
+        {"kind: sdram, cas_latency: 2, row_words: 16, internal_banks: 2, activate_cycles: 1, "
+         "precharge_cycles: {}, refresh_interval_cycles: 64, refresh_cycles: 3",
+         {"1", "6"}}};
+    const Kind& common = kinds[below(kinds.size())];
     for (std::size_t i = 0; i < banks; ++i) {
-      std::string kind = kinds[below(3) == 0 ? below(kinds.size()) : common];
-      kind.replace(kind.find("DEPTH"), 5, i > 0 && below(4) == 0 ? "300" : "4096");
-      names += fmt::format("{}b{}: {}", i == 0 ? "" : ", ", i, kind);
+      const Kind& kind = below(4) == 0 ? kinds[below(kinds.size())] : common;
+      const char* const value = i > 0 && below(3) == 0 ? kind.values.second : kind.values.first;
+      names += fmt::format("{}b{}: {{{}, words: {}}}", i == 0 ? "" : ", ", i,
+                           fmt::format(fmt::runtime(kind.keys), value), i > 0 && below(4) == 0 ? 300 : 4096);
     }
     const bool has_tables = below(3) != 0;
-    const std::string images = parts_ == 2 || below(2) == 0 ? "b0" : "[b0, b0]";
+    // So that brute force has some thousand boards at most, there are not many buffers in many banks.
+    const bool has_pictures = parts_ == 1 && (banks == 2 || !has_tables) && below(2) == 0;
+    const std::string images = has_pictures ? "[b0, b0]" : "b0";
     const std::string lut = has_tables ? "b0" : "none";
     board = fmt::format(
         "extends: fpl2003\nname: small\nimage: {{width: {}, height: {}}}\n"
         "ssram: {{default: {{kind: zbt_pipelined, words: 4096}}, banks: {{{}}}}}\n"
         "allocation: {{left_image: {}, right_image: {}, disparity: {}, left_lut: {}, right_lut: {}}}\n"
+        "fpga: {{arbitration: {}, pipeline_latency_cycles: {}}}\n"
         "matcher: {{window: 3, disparities: {}, filter: {}}}\n",
-        4 * (2 + below(4)), 4 + below(5), names, images, images, below(2) == 0 ? "b0" : "[b0, b0]", lut, lut,
-        3 + below(6), below(2) == 0 ? "none" : "log7");
+        4 * (2 + below(4)), 4 + below(5), names, images, images,
+        parts_ == 2 || below(2) == 0 ? "b0" : "[b0, b0]", lut, lut,
+        below(2) == 0 ? "fixed_priority" : "round_robin", below(2) == 0 ? 0 : 16, 3 + below(6),
+        below(2) == 0 ? "none" : "log7");
+    plan = fmt::format("board: board.yaml\nrun: {{source: preloaded{}}}\nvary:\n",
+                       below(3) == 0 ? ", frames: 3" : "");
     std::vector<std::string> axes = {"matcher.window: [3, 5]",
                                      "matcher.rows: [1, 2]",
                                      "matcher.units: [all, 2]",
@@ -73,13 +89,17 @@ class RandomSpace {
                                      "fpga.result_fifo_words: [1, 8]",
                                      "fpga.clock_mhz: [33.333, 40]",
                                      "fpga.arbitration: [fixed_priority, round_robin, age]",
+                                     "fpga.result_delay_cycles: [0, 5]",
                                      "matcher.lr_tolerance: ['off', 1]"};
     if (has_tables) axes.emplace_back("fpga.tables: [separate, joint]");
     std::shuffle(axes.begin(), axes.end(), random_);
     axes.resize(1 + below(3));
     for (const std::string& axis : axes) plan += "  " + axis + '\n';
     if (below(3) == 0) plan += "where: [matcher.window + matcher.rows <> 5 OR fpga.lanes = 2]\n";
-    if (places_) plan += fmt::format("placements: {{banks: {}, stripes: {}}}\n", 1 + below(banks), parts_);
+    if (places_) {
+      const std::size_t most = below(3) == 0 ? 1 + below(banks) : banks;
+      plan += fmt::format("placements: {{banks: {}, stripes: {}}}\n", most, parts_);
+    }
     std::vector<std::pair<std::string, bool>> goals = {{"frames_per_second.core", true},
                                                        {"area.slices", false},
                                                        {"cycles", false},
@@ -89,7 +109,7 @@ class RandomSpace {
                                                        {"pins", false},
                                                        {kStalls, false}};
     std::shuffle(goals.begin(), goals.end(), random_);
-    goals.resize(1 + below(3));
+    goals.resize(1 + below(4));
     for (const bool is_maximum : {true, false}) {
       std::string list;
       for (const auto& [text, aim] : goals) {
@@ -104,7 +124,7 @@ class RandomSpace {
   }
 
   std::string board;
-  std::string plan = "board: board.yaml\nrun: {source: preloaded}\nvary:\n";
+  std::string plan;
 
  private:
   std::size_t below(std::size_t end) {
@@ -335,6 +355,11 @@ TEST(RandomSearches, FindTheFrontOfBruteForce) {
   const char* const first = std::getenv("STEREOTLM_FIRST_SEED");
   for (std::uint64_t seed = first != nullptr ? std::stoull(first) : 1; seed <= spaces; ++seed) {
     const RandomSpace space(seed);
+    if (const char* const folder = std::getenv("STEREOTLM_SPACES")) {  // for check_search_test.py
+      const std::filesystem::path own = std::filesystem::path(folder) / std::to_string(seed);
+      write_file(own / "board.yaml", space.board);
+      write_file(own / "plan.yaml", space.plan);
+    }
     ASSERT_EQ(difference(seed, model), "") << "seed " << seed << '\n' << space.board << space.plan;
   }
 }

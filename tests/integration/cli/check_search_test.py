@@ -1,0 +1,125 @@
+"""The checker of searches (tests/support/check_search.py): it agrees with searches, and sees what is wrong.
+
+STEREOTLM_SPACES: a folder of spaces that random_searches_test has written; they are checked too.
+"""
+
+import os
+import pathlib
+import sqlite3
+import subprocess
+import sys
+
+import program
+from program import PROGRAM, ProgramTest, run
+
+CHECKER = pathlib.Path(__file__).parents[2] / "support" / "check_search.py"
+# Frames are independent: groups of placements. All verdicts but `unmet`, which needs no simulation.
+GROUPS = """
+board: fpl2003
+run: {source: preloaded}
+set: {image.width: 16, image.height: 8, matcher.disparities: 8}
+vary:
+  matcher.window: [3, 5]
+  matcher.units: [all, 4]
+  matcher.fetch: [column, line_buffer]
+  matcher.rows: [1, 2]
+  fpga.lanes: {from: 1, to: 2, step: 1}
+where: [matcher.window + fpga.lanes <> 7]
+placements: {banks: 2}
+maximise: frames_per_second.core
+minimise: [area.slices, used_banks]
+require: [matcher.window * used_banks > 4]
+"""
+# Frames depend on each other; banks differ, in one key or more.
+SINGLE = """
+board: board.yaml
+run: {source: preloaded}
+vary:
+  fpga.arbitration: [fixed_priority, round_robin]
+zip: [{fpga.lane_fifo_slots: [4, 16], fpga.result_fifo_words: [8, 2]}]
+placements: {banks: 2, stripes: 2}
+maximise: frames_per_second.core
+minimise: [energy.memory_mj_per_frame]
+"""
+BOARD = """
+extends: fpl2003
+name: small
+image: {width: 12, height: 6}
+ssram:
+  default: {kind: sync_burst, words: 300, turnaround_cycles: 2}
+  banks: {a: {}, b: {turnaround_cycles: 4}}
+allocation: {left_image: a, right_image: a, disparity: a, left_lut: a, right_lut: b}
+matcher: {window: 3, disparities: 4}
+"""
+
+
+class CheckSearch(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.store = self.folder / "found.db"
+
+    def search(self, plan):
+        self.file("plan.yaml", plan)
+        self.file("board.yaml", BOARD)
+        self.succeeds(run("optimise", "plan.yaml", "--out", self.store, cwd=self.folder))
+
+    def check(self, folder=None, loops=40):
+        words = [sys.executable, "-B", CHECKER, self.store, PROGRAM, "--loops", str(loops), "--boards", "800"]
+        return subprocess.run(words, cwd=folder or self.folder, capture_output=True, text=True, check=False)
+
+    def agrees(self, *what):
+        process = self.check()
+        self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
+        self.assertIn("40 run in the loop", process.stdout.replace(", without waits", ""))
+        for one in what:
+            self.assertRegex(process.stdout, rf"[1-9]\d* {one}, boards")
+
+    def test_agrees_with_searches(self):
+        self.search(GROUPS)
+        self.agrees("impossible", "excluded", "bound", "dominated", "front", "unmet")
+        self.store.unlink()
+        self.search(SINGLE)
+        self.agrees("dominated", "front")
+
+    def test_sees_what_is_wrong(self):
+        """A statement that spoils the database, and what the checker says then."""
+        self.search(GROUPS)
+        good = self.store.read_bytes()
+        for statement, expected in [
+            ("DELETE FROM parts WHERE verdict = 'bound'", "the parts are no cover"),
+            ("UPDATE parts SET verdict = 'impossible' WHERE verdict = 'excluded'",
+             "a board that is possible, or is not"),
+            ("UPDATE parts SET verdict = 'unmet' WHERE verdict = 'bound'", "the requirements say otherwise"),
+            ("UPDATE parts SET verdict = 'bound' WHERE verdict = 'excluded'", "where says otherwise"),
+            ("DELETE FROM examined WHERE fate = 'dominated'", "the fates do not cover the placements"),
+            ("UPDATE spaces SET placements = '999' WHERE number = 1", "other placements"),
+            ("UPDATE examined SET least_cycles = 2 * least_cycles WHERE fate = 'bound'",
+             "a bound above the cycles"),
+            ("UPDATE examined SET fate = 'bound' WHERE fate = 'front' AND rowid % 2",
+             "nothing on the front beats"),
+            ("UPDATE examined SET results = results + 1 WHERE fate = 'dominated'", "other results"),
+            ("UPDATE front_values SET least = least + 1, most = most + 1 WHERE goal = 0",
+             "boards of the front with other values"),
+            ("UPDATE front SET boards = boards + 1", "another number of boards has a point"),
+            ("DELETE FROM front_values WHERE point = 0", "nothing on the front beats|with other values"),
+            ("UPDATE search SET value = value + 1 WHERE name = 'boards'", "another number of boards"),
+        ]:
+            with self.subTest(statement):
+                self.store.write_bytes(good)
+                with sqlite3.connect(self.store) as database:
+                    self.assertGreater(database.execute(statement).rowcount, 0)
+                process = self.check(loops=0)
+                self.assertEqual(process.returncode, 1, process.stdout + process.stderr)
+                self.assertRegex(process.stdout, expected)
+
+    @program.unittest.skipUnless("STEREOTLM_SPACES" in os.environ, "no random spaces are given")
+    def test_agrees_with_random_searches(self):
+        for folder in sorted(pathlib.Path(os.environ["STEREOTLM_SPACES"]).iterdir()):
+            self.store = self.folder / f"{folder.name}.db"
+            self.succeeds(run("optimise", "plan.yaml", "--out", self.store, cwd=folder))
+            process = self.check(folder)
+            self.assertEqual(process.returncode, 0, f"{folder}\n{process.stdout}{process.stderr}")
+
+
+if __name__ == "__main__":
+    program.main()
