@@ -47,7 +47,7 @@ std::string computer_rate_lines(const platform::Statistics& statistics) {
                        rate_remark(rate.steady->frames_per_second, *statistics.bound.system, lost));
   }
   if (rate.proven && rate.proven->exact)
-    text += fmt::format("{:<14} {:>8.3f} frames/s   exactly {} in {} camera frames\n", "for ever",
+    text += fmt::format("{:<14} {:>8.3f} frames/s   exactly {} in {} camera frames\n", "long run",
                         *rate.proven->exact, *rate.proven->deliveries, *rate.proven->camera_frames);
   return text +
          fmt::format("{:<14} {:>8.3f} frames/s{}{}\n", "from power-up", *rate.system, rate_remark(0, 0, lost),

@@ -29,6 +29,8 @@ constexpr std::size_t kMostGoals = 8;
 constexpr const char* kSteady = "frames_per_second.steady";
 constexpr const char* kUncertainty = "frames_per_second.steady_uncertainty";
 constexpr const char* kLostPixels = "lost_pixels";
+constexpr const char* kExactLeast = "frames_per_second.exact_least";
+constexpr const char* kExactMost = "frames_per_second.exact_most";
 constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
 constexpr std::size_t kPieces = 32;               // for each process, of a round
 constexpr std::size_t kRunsOfComputers = 2;       // the same, of a round with whole computers
@@ -250,7 +252,7 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   for (const std::string& name : without) needed.erase(name);
   for (const std::string& name : needed)
     needs_all_ = needs_all_ || std::count(core_figures().begin(), core_figures().end(), name) == 0;
-  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kLostPixels});
+  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kLostPixels, kExactLeast, kExactMost});
   needed_ = {needed.begin(), needed.end()};
   needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
   const std::vector<std::string> varied = plan.varied();
@@ -467,7 +469,7 @@ std::vector<double> Search::Space::simulate(Combination& of, const Placements::G
     const auto found = std::find_if(figures.values.begin(), figures.values.end(),
                                     [&name](const auto& value) { return value.path == name; });
     if (found == figures.values.end()) {
-      if (name != kUncertainty)
+      if (name != kUncertainty && name != kExactLeast && name != kExactMost)
         throw std::runtime_error(fmt::format("{}: a board of the plan does not have this figure", name));
       values.push_back(0);
     } else if (const auto* const integer = std::get_if<std::int64_t>(&found->value)) {
@@ -514,7 +516,11 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
     const double rate = steady->second.least;
     const double uncertainty = now.range(kUncertainty).least;
     const double bound = model_.steady_bound(facts.board);
-    steady->second = {rate - uncertainty, std::max(rate - uncertainty, std::min(rate + uncertainty, bound))};
+    const Range proven = {now.range(kExactLeast).least, now.range(kExactMost).least};
+    steady->second =
+        proven.is_exact()
+            ? proven
+            : Range{rate - uncertainty, std::max(rate - uncertainty, std::min(rate + uncertainty, bound))};
   }
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];
