@@ -35,8 +35,7 @@ FrameWaits waits_of_frame(const BoardConfig& board, const FrameAccesses& accesse
   std::vector<int> ports(banks);
   for (std::size_t group = 0; group < fpga::kCoreGroupCount; ++group) {
     for (std::size_t bank = 0; bank < banks && has_group(core, group); ++bank) {
-      if ((its[group].banks() >> bank & 1U) != 0)
-        ports[bank] += group == fpga::kResultGroup ? 1 : core.lanes;
+      if ((its[group].banks() >> bank & 1U) != 0) ports[bank] += group == fpga::kResultGroup ? 1 : core.lanes;
     }
   }
   std::vector<std::uint64_t> of_host(banks);  // words that it moves beside the frame
@@ -76,11 +75,11 @@ FrameWaits waits_of_frame(const BoardConfig& board, const FrameAccesses& accesse
 
 // How long the steps of a computer take, in ps.
 struct Times {
-  double answer = 0;   // of the driver: from an event to its last access that follows from it
-  double strobe = 0;   // from the driver's access to cycle 0 of the frame
-  double capture = 0;  // from the beginning of a camera frame
-  double copy = 0;     // of a pair
-  double result = 0;   // read back
+  double answer = 0;                // of the driver: from an event to its last access that follows from it
+  double strobe = 0;                // from the driver's access to cycle 0 of the frame
+  double capture = 0;               // from the beginning of a camera frame
+  double copy = 0;                  // of a pair
+  double result = 0;                // read back
   std::vector<double> frames = {};  // of the core, of a turn of the lists
 };
 
@@ -96,7 +95,8 @@ double last_pixel_ps(const BoardConfig& board) {
 Times least_times(const BoardConfig& board) {
   const auto transfer = [&](double words) {
     const double bursts = std::ceil(words / board.bridge.dma_burst_words);
-    const double pci_clocks = words / (board.pci.width_bits / 32) + bursts * (2 + board.pci.memory_wait_clocks);
+    const double pci_clocks =
+        words / (board.pci.width_bits / 32) + bursts * (2 + board.pci.memory_wait_clocks);
     return std::max({words * 1e6 / board.bridge.local_clock_mhz, words * 1e6 / board.fpga.clock_mhz,
                      pci_clocks * 1e6 / board.pci.clock_mhz}) -
            4;
@@ -140,7 +140,8 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
     if (!is_fixed) grant += static_cast<double>(core_ports(board).core_size()) * (1 + turnaround);
   }
   const bool in_step = Clock(board.bridge.local_clock_mhz).divides(Clock(board.fpga.clock_mhz));
-  const double word = in_step ? local + grant * fpga + (grant > 0 ? local : 0) : 2 * local + (1 + grant) * fpga;
+  const double word =
+      in_step ? local + grant * fpga + (grant > 0 ? local : 0) : 2 * local + (1 + grant) * fpga;
   const double posted_word = 3 * local + word;
   const double dma = 5 * local + latency * fpga + burst * word;
   const double drain = dma + (posted + 5) * posted_word + 2 * local + fpga;
@@ -153,9 +154,9 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
   const double capture = 2 + capture_wait + std::ceil((to_host ? fifo : std::min(fifo, posted)) / width);
   const double bridge = 2 + memory_wait + std::ceil(std::max(burst, 4.0) / width);
   const double driver = 5 + board.pci.bridge_wait_clocks;
-  const double load =
-      board.pci.load ? (3 + std::ceil(board.pci.load->burst_words / width)) * pci + board.pci.load->access_us * 1e6
-                     : 0;
+  const double load = board.pci.load ? (3 + std::ceil(board.pci.load->burst_words / width)) * pci +
+                                           board.pci.load->access_us * 1e6
+                                     : 0;
   const double round = (2 * capture + bridge + driver + 1) * pci + load;
 
   // The words of the captures.
@@ -167,8 +168,7 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
   const double spare = to_host ? service : service - rate;
   if (spare <= 0) return std::nullopt;
   constexpr double kPostedWrites = 4;  // that start the core
-  const double posting =
-      (posted + (to_host ? 0 : behind) + kPostedWrites * (open + service * round)) / spare;
+  const double posting = (posted + (to_host ? 0 : behind) + kPostedWrites * (open + service * round)) / spare;
 
   std::size_t pages = 0;  // that arm a capture
   bool is_striped = false;
@@ -192,7 +192,7 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
   const double channels = to_host ? 2 : 1;
   const double word_of_capture = pci + (to_host ? 0 : posted_word);
   const double free = 1 - rate * word_of_capture - drain / frame_ps;
-  if (free <= 0) return std::nullopt;
+  if (frame_ps <= 0 || free <= 0) return std::nullopt;
   const auto transfer = [&](double words, double descriptors) {
     const double bursts = std::ceil(words / burst) + descriptors;
     const double turns = (bursts + descriptors) * pieces * channels;
@@ -299,17 +299,21 @@ std::optional<ProvenRate> proven_rate(const BoardConfig& board, const FrameAcces
     longest.push_back(static_cast<double>(shortest + cycles) * cycle_ps + 2);
   }
   ProvenRate proven;
-  const Fraction fastest = rate_of(board, take_turns(board, least, units_a_ps, period, kFrames), period, false);
+  const Fraction fastest =
+      rate_of(board, take_turns(board, least, units_a_ps, period, kFrames), period, false);
   proven.most = bound;
   if (fastest.periods != 0)
     proven.most = std::min(bound, periods_a_second * static_cast<double>(fastest.deliveries) /
                                       static_cast<double>(fastest.periods));
   std::optional<Times> most;
-  if (is_known) most = most_times(board, meets_host, *std::min_element(least.frames.begin(), least.frames.end()));
+  if (is_known)
+    most = most_times(board, meets_host, *std::min_element(least.frames.begin(), least.frames.end()));
   if (!most) return proven;
   most->frames = longest;
-  const Fraction slowest = rate_of(board, take_turns(board, *most, units_a_ps, period, kFrames), period, true);
-  proven.least = periods_a_second * static_cast<double>(slowest.deliveries) / static_cast<double>(slowest.periods);
+  const Fraction slowest =
+      rate_of(board, take_turns(board, *most, units_a_ps, period, kFrames), period, true);
+  proven.least =
+      periods_a_second * static_cast<double>(slowest.deliveries) / static_cast<double>(slowest.periods);
   if (!is_free_running || slowest < fastest || fastest < slowest) return proven;
   const auto deliveries = static_cast<std::uint64_t>(slowest.deliveries);
   const auto camera_frames = static_cast<std::uint64_t>(slowest.periods);

@@ -132,8 +132,8 @@ constexpr auto fields_of(const SteadyRate* /*type*/) {
 constexpr auto fields_of(const ProvenRate* /*type*/) {
   return std::tuple(
       Field{"exact", &ProvenRate::exact, "in the long run, where it is proven", stats::above_zero},
-      Field{"exact_deliveries", &ProvenRate::deliveries, "exact: so many in exact_camera_frames"},
-      Field{"exact_camera_frames", &ProvenRate::camera_frames, "exact: exact_deliveries in so many"},
+      Field{"exact_delivered_frames", &ProvenRate::deliveries, "exact: so many in exact_camera_frames"},
+      Field{"exact_camera_frames", &ProvenRate::camera_frames, "exact: exact_delivered_frames in so many"},
       Field{"exact_least", &ProvenRate::least, "proven lower bound of the rate in the long run"},
       Field{"exact_most", &ProvenRate::most, "proven upper bound of the rate in the long run"});
 }
