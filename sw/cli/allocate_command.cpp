@@ -130,8 +130,9 @@ void take_best(explore::Search& search, AllocationReport& report) {
     const explore::Search::Board first = search.board(point.first.front());
     const std::map<std::string, double> figures = search.results_of(point.first.front());
     RatedAllocations rated = {point.boards, *first.board, {}, point.values[0]};
-    if (report.run.camera && point.values[0].is_exact()) {
-      rated.rate = {point.values[0].least, 0, true, 0};
+    const auto exact = figures.find("frames_per_second.exact");  // 0: not proven
+    if (exact != figures.end() && exact->second > 0) {
+      rated.rate = {exact->second, 0, true, 0};
     } else if (report.run.camera) {
       rated.rate = {figures.at("frames_per_second.steady"),
                     figures.at("frames_per_second.steady_uncertainty"), false, 0};

@@ -94,6 +94,13 @@ bool Expression::is_fixed() const {
   });
 }
 
+Range narrowed(const Range& proven, double rate, double uncertainty) {
+  constexpr double kRounding = 1e-9;
+  const Range both = {std::max(rate - uncertainty, proven.least), std::min(rate + uncertainty, proven.most)};
+  if (both.least <= both.most) return both;
+  return both.least - both.most < kRounding * rate ? Range::of(both.most) : proven;
+}
+
 Range Known::range(const std::string& figure) const {
   if (const auto found = without_simulation.find(figure); found != without_simulation.end())
     return found->second;

@@ -23,6 +23,10 @@ struct Range {
   bool is_exact() const { return least == most; }
 };
 
+// What is known of a rate in the long run: by what is proven, and by a measured rate with its uncertainty. If
+// the two contradict each other, by more than rounding, what is proven holds.
+Range narrowed(const Range& proven, double rate, double uncertainty);
+
 using FigureRanges = std::map<std::string, Range>;  // by name; one that is missing can have any value
 
 // What is known of a board.

@@ -29,6 +29,9 @@ using platform::BoardConfig;
 constexpr std::size_t kMostGoals = 8;
 constexpr const char* kSteady = "frames_per_second.steady";
 constexpr const char* kUncertainty = "frames_per_second.steady_uncertainty";
+constexpr const char* kExact = "frames_per_second.exact";
+constexpr const char* kExactLeast = "frames_per_second.exact_least";
+constexpr const char* kExactMost = "frames_per_second.exact_most";
 constexpr const char* kLostPixels = "lost_pixels";
 constexpr double kNoValue = -1;                   // of an accuracy
 constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
@@ -276,7 +279,7 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   for (const std::string& name : without) needed.erase(name);
   for (const std::string& name : needed)
     needs_all_ = needs_all_ || std::count(core_figures().begin(), core_figures().end(), name) == 0;
-  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kLostPixels});
+  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kExact, kExactLeast, kExactMost, kLostPixels});
   needed_ = {needed.begin(), needed.end()};
   needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
   const std::vector<std::string> varied = plan.varied();
@@ -547,7 +550,7 @@ std::vector<double> Search::Space::simulate(Combination& of, const Placements::G
     const auto found = std::find_if(figures.values.begin(), figures.values.end(),
                                     [&name](const auto& value) { return value.path == name; });
     if (found == figures.values.end()) {
-      if (name != kUncertainty)
+      if (name != kUncertainty && name.rfind(kExact, 0) != 0)
         throw std::runtime_error(fmt::format("{}: a board of the plan does not have this figure", name));
       values.push_back(0);
     } else if (const auto* const integer = std::get_if<std::int64_t>(&found->value)) {
@@ -593,10 +596,12 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
     if (now.range(kLostPixels).least > 0) return std::nullopt;  // the bound is one of whole pictures
     const double rate = steady->second.least;
     const double uncertainty = now.range(kUncertainty).least;
-    const Range proven = long_run_rate(of, placement, facts.board);
-    const Range both = {std::max(rate - uncertainty, proven.least),
-                        std::min(rate + uncertainty, proven.most)};
-    steady->second = both.least <= both.most ? both : proven;
+    Range proven = long_run_rate(of, placement, facts.board);
+    if (const double most = now.range(kExactMost).least; most > 0) {  // of the frames of the run
+      proven.least = std::max(proven.least, now.range(kExactLeast).least);
+      proven.most = std::max(proven.least, std::min(proven.most, most));
+    }
+    steady->second = narrowed(proven, rate, uncertainty);
   }
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];

@@ -5,15 +5,19 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/figures/bounds.h"
+#include "platform/figures/proven_rate.h"
 #include "sw/explore/optimise/search.h"
 #include "sw/runs/simulation/board_model.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -388,6 +392,107 @@ TEST(RandomSearches, SeeAWrongBound) {
     return 2 * right(board);
   };
   EXPECT_GT(seen(wrong), 0);
+}
+
+// Of whole computers. A plan whose cameras are about as quick as the core, so that some boards lose pixels.
+std::pair<std::string, std::string> computer_space(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto below = [&random](std::uint64_t end) { return random() % end; };
+  const std::vector<std::string> kinds = {"{kind: zbt_pipelined}", "{kind: zbt_flow_through}",
+                                          "{kind: sync_burst, turnaround_cycles: 2}"};
+  const std::string images = below(2) == 0 ? "a" : "[a, b]";
+  const std::string board = fmt::format(
+      "extends: fpl2003\nname: small\nimage: {{width: {}, height: {}}}\ncameras: {{frame_rate_hz: {}}}\n"
+      "capture: {{fifo_words: 16, fifo_trigger_words: 4}}\nbridge: {{posted_words: 16}}\n"
+      "fpga: {{clock_mhz: 4}}\nmatcher: {{filter: none, window: 3, disparities: 4}}\n"
+      "ssram: {{default: {{words: 4096}}, banks: {{a: {}, b: {}, c: {}}}}}\n"
+      "allocation: {{left_image: {}, right_image: {}, disparity: b, left_lut: none, right_lut: none}}\n",
+      4 * (8 + below(8)), 8 + below(8), 400 + 100 * below(7), kinds[0], kinds[below(3)], kinds[below(3)],
+      images, images);
+  std::vector<std::string> axes = {"fpga.clock_mhz: [4, 5]",
+                                   "matcher.rows: [1, 2]",
+                                   "matcher.units: [all, 1]",
+                                   "fpga.lane_fifo_slots: [3, 8]",
+                                   "capture.fifo_words: [8, 64]",
+                                   "matcher.fetch: [column, line_buffer]",
+                                   "bridge.posted_words: [4, 64]",
+                                   "cameras.frame_rate_hz: [600, 950]",
+                                   "fpga.arbitration: [fixed_priority, round_robin]"};
+  std::shuffle(axes.begin(), axes.end(), random);
+  std::string plan = "board: board.yaml\nrun: {source: camera}\nvary:\n";
+  for (std::size_t i = 0; i < 2; ++i) plan += "  " + axes[i] + '\n';
+  plan += "placements: {banks: 3}\nmaximise: [frames_per_second.steady]\n";
+  if (below(2) == 0) plan += "minimise: [banks_used]\n";
+  return {board, plan};
+}
+
+// What is known of the rate of a board in the long run; nullopt: it loses pixels.
+std::optional<explore::Range> steady_of(const explore::Point& point, const explore::Figures& figures) {
+  if (value_of("lost_pixels", *point.board, figures) > 0) return std::nullopt;
+  const double rate = value_of("frames_per_second.steady", *point.board, figures);
+  const double uncertainty = value_of("frames_per_second.steady_uncertainty", *point.board, figures);
+  const fpga::AccessPatterns patterns = platform::access_patterns(*point.board, nullptr);
+  const platform::FrameAccesses accesses = platform::frame_accesses(*point.board, patterns);
+  const auto cycles =
+      platform::core_frame_cycles(*point.board, patterns, platform::allocation_period_frames(*point.board));
+  const auto proven =
+      platform::proven_rate(*point.board, accesses, cycles, platform::steady_bound(*point.board, accesses));
+  const double least =
+      std::max(proven->least, value_of("frames_per_second.exact_least", *point.board, figures));
+  const double of_run = value_of("frames_per_second.exact_most", *point.board, figures);
+  const double most = std::max(least, std::min(proven->most, of_run));
+  return explore::narrowed({least, most}, rate, uncertainty);
+}
+
+TEST(RandomSearches, OfComputersFindTheFrontOfBruteForce) {
+  using Values = std::vector<std::pair<double, double>>;  // [goal]: worst and best; larger is better
+  const std::uint64_t spaces = spaces_of_environment(3);
+  for (std::uint64_t seed = 1; seed <= spaces; ++seed) {
+    const auto [board_text, plan_text] = computer_space(seed);
+    const ScratchFolder folder;
+    const std::string board_file = write_file((folder.path() / "board.yaml").string(), board_text);
+    const explore::Plan plan =
+        explore::Plan::load(write_file((folder.path() / "plan.yaml").string(), plan_text), board_file);
+    std::map<Values, std::uint64_t> all;
+    runs::PointSimulator simulator;
+    for (std::uint64_t number = 0; number < plan.size(); ++number) {
+      for (const BoardConfig& board : boards_of(plan, number)) {
+        const explore::Point point = explore::make_point(number, board, plan.read(number).run);
+        const auto steady = steady_of(point, simulator(point));
+        if (!steady) continue;
+        Values values = {{steady->least, steady->most}};
+        if (plan.wishes().goals.size() > 1) {
+          const double banks = -value_of("banks_used", board, {});
+          values.emplace_back(banks, banks);
+        }
+        ++all[values];
+      }
+    }
+    const auto beats = [](const Values& one, const Values& other) {
+      bool is_better = false;
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        if (one[i].first < other[i].second) return false;
+        is_better = is_better || one[i].first > other[i].second;
+      }
+      return is_better;
+    };
+    std::map<Values, std::uint64_t> expected;
+    for (const auto& one : all) {
+      if (std::none_of(all.begin(), all.end(),
+                       [&](const auto& other) { return beats(other.first, one.first); }))
+        expected.insert(one);
+    }
+    const explore::BoardModel model = runs::board_model(nullptr);
+    explore::Search search(plan, plan.wishes(), model, 2);
+    ASSERT_TRUE(search.run([](const explore::SearchState&) { return true; }));
+    std::map<Values, std::uint64_t> found;
+    for (const FrontPoint& point : search.front()) {
+      Values values = {{point.values[0].least, point.values[0].most}};
+      if (point.values.size() > 1) values.emplace_back(-point.values[1].least, -point.values[1].least);
+      found[values] += point.boards;
+    }
+    EXPECT_EQ(found, expected) << "seed " << seed << '\n' << board_text << plan_text;
+  }
 }
 
 }  // namespace
