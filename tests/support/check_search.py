@@ -396,7 +396,8 @@ class Check:
             if results:
                 names = sorted({name for text in (*self.requirements, *(figure for figure, _ in self.goals))
                                 for name in NAMES.findall(text) if name in row and name not in self.keys
-                                and not name.startswith("area.") and name not in ("used_banks", "pins")})
+                                and not name.startswith(("area.", "accuracy."))
+                                and name not in ("used_banks", "pins")})
                 names = sorted({*names, UNCERTAINTY, "lost_pixels"}) if self.asks_steady else names
                 has_sdram = any("sdram" in kind for kind in self.placements(at).kinds)
                 is_full = (not is_core or set(names) - {"cycles", RATE, ENERGY}
