@@ -318,7 +318,7 @@ std::string problem_of(explore::Search& search, const explore::Search::Examined&
     const explore::Search::Board one = search.board({fate.combination, placement});
     const explore::Figures figures =
         runs::PointSimulator()(explore::make_point(fate.combination, *one.board, one.run));
-    uses.emplace(platform::pins_of(*one.board), value_of("used_banks", *one.board, figures));
+    uses.emplace(platform::pins_of(*one.board), value_of("banks_used", *one.board, figures));
     const double cycles = value_of("cycles", *one.board, figures) +
                           value_of("frames", *one.board, figures) * one.board->fpga.pipeline_latency_cycles;
     std::vector<double> named;
