@@ -245,7 +245,7 @@ class Check:
             for row in map(dict, points.execute("SELECT * FROM points")):
                 board = tuple(map(int, row["name"][1:].split("p")))
                 buffers = plain_core.buffers(self.board(*board)).values()
-                row["used_banks"] = len({bank for each in buffers for parts in each for bank in parts})
+                row["banks_used"] = len({bank for each in buffers for parts in each for bank in parts})
                 row["all_cycles"] = None
                 if row["status"] == "ok" and not self.is_camera(board[0]):
                     row["all_cycles"] = row["cycles"] + row["frames"] * row["fpga.pipeline_latency_cycles"]
@@ -276,7 +276,7 @@ class Check:
 
     def at_best(self, row, cycles):
         """The values with fewer cycles than the row has; None if goals depend on them in another way."""
-        fixed = self.keys | {"used_banks", "pins"}
+        fixed = self.keys | {"banks_used", "pins"}
         for figure, _ in self.goals:
             names = {name for name in NAMES.findall(figure) if name in row and not name.startswith("area.")}
             if figure not in ("cycles", RATE) and not names <= fixed:
@@ -396,7 +396,8 @@ class Check:
             if results:
                 names = sorted({name for text in (*self.requirements, *(figure for figure, _ in self.goals))
                                 for name in NAMES.findall(text) if name in row and name not in self.keys
-                                and not name.startswith("area.") and name not in ("used_banks", "pins")})
+                                and not name.startswith(("area.", "accuracy."))
+                                and name not in ("banks_used", "pins")})
                 names = sorted({*names, UNCERTAINTY, "lost_pixels"}) if self.asks_steady else names
                 has_sdram = any("sdram" in kind for kind in self.placements(at).kinds)
                 is_full = (not is_core or set(names) - {"cycles", RATE, ENERGY}

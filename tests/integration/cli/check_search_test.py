@@ -27,8 +27,8 @@ vary:
 where: [matcher.window + fpga.lanes <> 7]
 placements: {banks: 2}
 maximise: frames_per_second.core
-minimise: [area.slices, used_banks]
-require: [matcher.window * used_banks > 4]
+minimise: [area.slices, banks_used]
+require: [matcher.window * banks_used > 4]
 """
 # Frames depend on each other; banks differ, in one key or more.
 SINGLE = """

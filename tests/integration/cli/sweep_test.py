@@ -24,7 +24,7 @@ IMPOSSIBLE = 6  # the two image lists of different lengths
 OK = POINTS - IMPOSSIBLE
 MORE = PLAN.replace("[3, 5, 7]", "[7, 9]")  # 4 points that PLAN has, and 4 others
 
-STUDIES = tracked("results/*/*.yaml")
+STUDIES = [plan for plan in tracked("results/*/*.yaml") if "\nplacements:" not in plan.read_text()]
 
 
 class SweepTest(ProgramTest):
