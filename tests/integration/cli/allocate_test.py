@@ -252,7 +252,7 @@ class Allocate(ProgramTest):
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
         self.assertTrue(errors.endswith("stereotlm: note: interrupted: run the same command to resume\n"))
-        rates = [tuple(map(float, value.split()[:2])) for value, in known() if value.split()[2] == "0"]
+        rates = [tuple(map(float, value.split()[2:4])) for value, in known() if value.split()[4] == "0"]
         found = self.rates_of(written, "--timing-only", "--frames", 122)
         best = {name: found[name] for name in ("steady", "steady_uncertainty")}
         self.assertIn(tuple(best.values()), rates)
