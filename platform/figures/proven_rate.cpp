@@ -96,7 +96,7 @@ Times least_times(const BoardConfig& board) {
   const auto transfer = [&](double words) {
     const double bursts = std::ceil(words / board.bridge.dma_burst_words);
     const double pci_clocks =
-        words / (board.pci.width_bits / 32) + bursts * (2 + board.pci.memory_wait_clocks);
+        words / (board.pci.width_bits / 32.0) + bursts * (2 + board.pci.memory_wait_clocks);
     return std::max({words * 1e6 / board.bridge.local_clock_mhz, words * 1e6 / board.fpga.clock_mhz,
                      pci_clocks * 1e6 / board.pci.clock_mhz}) -
            4;
@@ -147,7 +147,7 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
   const double drain = dma + (posted + 5) * posted_word + 2 * local + fpga;
 
   // The PCI bus.
-  const double width = board.pci.width_bits / 32;
+  const double width = board.pci.width_bits / 32.0;
   const double timer = board.pci.latency_timer_clocks;
   const double memory_wait = board.pci.memory_wait_clocks;
   const double capture_wait = to_host ? memory_wait : board.pci.bridge_wait_clocks;

@@ -12,7 +12,7 @@ namespace stereotlm::platform {
 
 // What contract 7.12 proves of the rate of a computer in the long run, while its captures lose no pixels.
 // `frame_cycles`: lengths of the first frames of a run. nullopt if they are less than a turn of the lists.
-// `bound`: bound.system. It takes some 50 us.
+// `bound`: bound.system. It takes some 20 us.
 std::optional<ProvenRate> proven_rate(const BoardConfig& board, const FrameAccesses& accesses,
                                       const std::vector<std::uint64_t>& frame_cycles, double bound);
 

@@ -225,6 +225,14 @@ platform::Statistics read_stats(const std::string& text, const platform::BoardCo
     if (reader.has(Pointer("/frames_per_second/steady")))
       statistics.frames_per_second.steady.emplace().frames =
           platform::steady_frames(frames, platform::allocation_period_frames(board));
+    if (reader.has(Pointer("/frames_per_second/exact_least"))) {
+      platform::ProvenRate& proven = statistics.frames_per_second.proven.emplace();
+      if (reader.has(Pointer("/frames_per_second/exact"))) {
+        proven.exact.emplace();
+        proven.deliveries.emplace();
+        proven.camera_frames.emplace();
+      }
+    }
   }
   reader.read(Pointer(), statistics);
   if (camera) {

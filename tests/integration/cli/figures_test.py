@@ -12,6 +12,7 @@ RUNS = {
             "vary: {matcher.window: [5, 7], allocation.right_image: [[bank2, bank3], bank3]}\n",
     "computer": f"board: two-banks\nrun: {{source: camera}}\nset: {{{SIZE}, fpga.package: ff1152}}\n"
                 "vary: {bridge.posted_words: [32, 64]}\n",
+    "proven": f"board: fpl2003\nrun: {{source: camera}}\nset: {{{SIZE}}}\n",
     "sdram": f"board: sdram\nset: {{{SIZE}}}\n",
     "lanes": f"board: eight-banks-four-lanes\nset: {{{SIZE}}}\n",
 }
