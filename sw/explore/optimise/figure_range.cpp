@@ -143,7 +143,7 @@ const std::vector<std::string>& figures_without_simulation() {
                                                   "area.multipliers",
                                                   "area.multipliers_percent",
                                                   "pins",
-                                                  "used_banks"};
+                                                  "banks_used"};
   return kNames;
 }
 

@@ -175,6 +175,9 @@ class Search::Space {
                                            std::uint64_t placement,
                                            const std::vector<std::vector<double>>& results);
   std::vector<double> totals(const Combination& of, const std::vector<std::vector<double>>& results) const;
+  // Of BoardModel::figures_of_cycles, or of result_names().
+  std::map<std::string, double> named(const Combination& of, const std::vector<std::vector<double>>& results,
+                                      const BoardConfig& board) const;
 
  private:
   // Whether placements of one use of banks can differ in figures that follow from the cycles.
@@ -486,6 +489,18 @@ std::vector<double> Search::Space::totals(const Combination& of,
   return {sum * static_cast<double>(of.turns)};
 }
 
+std::map<std::string, double> Search::Space::named(const Combination& of,
+                                                   const std::vector<std::vector<double>>& results,
+                                                   const BoardConfig& board) const {
+  const std::vector<double> all = totals(of, results);
+  if (!of.is_full)
+    return model_.figures_of_cycles(board, of.run.frames, static_cast<std::uint64_t>(all.front()),
+                                    needs_energy_);
+  std::map<std::string, double> figures;
+  for (std::size_t i = 0; i < needed_.size(); ++i) figures.emplace(needed_[i], all[i]);
+  return figures;
+}
+
 std::optional<std::vector<Range>> Search::Space::values(Combination& of, const Placements::Group& group,
                                                         std::uint64_t placement,
                                                         const std::vector<std::vector<double>>& results) {
@@ -493,22 +508,11 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
   if (is_alone(of)) own = facts_of(of, of.placements->placed(of.board, placement));
   const Combination::OfUse& facts = own ? *own : of_use(of, group.use);
   Known now = {facts.board, of.run, facts.figures};
-  const std::vector<double> all = totals(of, results);
-  double uncertainty = 0;
-  if (of.is_full) {
-    for (std::size_t i = 0; i < needed_.size(); ++i) {
-      now.others[needed_[i]] = Range::of(all[i]);
-      if (needed_[i] == kUncertainty) uncertainty = all[i];
-    }
-  } else {
-    const auto cycles = static_cast<std::uint64_t>(all.front());
-    for (const auto& [name, value] :
-         model_.figures_of_cycles(facts.board, of.run.frames, cycles, needs_energy_))
-      now.others[name] = Range::of(value);
-  }
+  for (const auto& [name, value] : named(of, results, facts.board)) now.others[name] = Range::of(value);
   if (const auto steady = now.others.find(kSteady); steady != now.others.end() && of.run.camera) {
     if (now.range(kLostPixels).least > 0) return std::nullopt;  // the bound is one of whole pictures
     const double rate = steady->second.least;
+    const double uncertainty = now.range(kUncertainty).least;
     const double bound = model_.steady_bound(facts.board);
     steady->second = {rate - uncertainty, std::max(rate - uncertainty, std::min(rate + uncertainty, bound))};
   }
@@ -798,7 +802,6 @@ bool Search::step(const std::function<bool()>& keep_going) {
 
 SearchState Search::state() const {
   SearchState state = state_;
-  if (space_->goals() != 1) return state;
   const bool is_maximum = space_->is_maximum(0);
   state.has_best = !front_.empty();
   if (state.has_best) state.best = best_of(front_.front().values.front(), is_maximum);
@@ -823,6 +826,22 @@ Search::Board Search::board(const BoardNumber& number) {
   Combination& its = space_->combination(number.combination);
   if (its.verdict == Verdict::kImpossible) return {std::nullopt, its.run, its.reason};
   return {its.placements->placed(its.board, number.placement), its.run, ""};
+}
+
+std::map<std::string, double> Search::results_of(const BoardNumber& number) {
+  Combination& its = space_->combination(number.combination);
+  const std::vector<Placements::Group>& groups = its.placements->groups();
+  const auto group = std::find_if(groups.begin(), groups.end(), [&](const Placements::Group& one) {
+    return std::binary_search(one.placements.begin(), one.placements.end(), number.placement);
+  });
+  std::vector<std::vector<double>> results;
+  for (const std::string& key : space_->result_keys(its, *group, number.placement)) {
+    const auto known = results_.find(key);
+    results.push_back(known != results_.end()
+                          ? known->second
+                          : space_->simulate(its, *group, number.placement, results.size()));
+  }
+  return space_->named(its, results, its.placements->placed(its.board, number.placement));
 }
 
 Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRun& run, bool places) {

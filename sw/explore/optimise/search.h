@@ -76,8 +76,8 @@ struct SearchState {
   std::uint64_t boards = 0;     // of the space
   std::uint64_t open = 0;       // not decided yet, at most
   std::uint64_t simulated = 0;  // runs
-  double best = 0;              // of the first goal, if there is one goal
-  double bound = 0;             // of the open boards
+  double best = 0;              // of the first goal
+  double bound = 0;             // of the first goal: of the open boards and the best
   bool has_best = false;
 };
 
@@ -121,6 +121,9 @@ class Search {
     std::string reason;
   };
   Board board(const BoardNumber& number);
+  // The results of the simulation of a board, by the names of result_names() or of core_figures(). Simulates
+  // it if that is not known.
+  std::map<std::string, double> results_of(const BoardNumber& number);
 
   // Why a board is not on the front.
   struct Judgement {

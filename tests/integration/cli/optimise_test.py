@@ -22,7 +22,7 @@ vary:
   matcher.rows: [1, 2]
 placements: {banks: 3}
 maximise: frames_per_second.core
-minimise: [area.slices, used_banks]
+minimise: [area.slices, banks_used]
 """
 # With a small FIFO the captures lose pixels.
 COMPUTER = """
