@@ -1,9 +1,8 @@
 // Runs the test bench (bench.v) under Verilator. The exit status is 0 if the core is as run.
+#include <Vbench.h>
 #include <verilated.h>
 
 #include <cstdio>
-
-#include "Vbench.h"
 
 int main(int argc, char** argv) {
   Verilated::commandArgs(argc, argv);

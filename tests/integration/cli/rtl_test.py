@@ -72,7 +72,7 @@ class Rtl(ProgramTest):
             for key, value, rule in (
                 ("fpga.lanes", "2", "1: the RTL has one lane on each side"),
                 ("fpga.pixel_cache", "word", "none: the RTL keeps no word that it has read"),
-                ("ssram.banks.bank0.kind", "qdr", "zbt_pipelined, zbt_flow_through or sync_burst: the RTL has "),
+                ("ssram.banks.bank0.kind", "qdr", "zbt_pipelined, zbt_flow_through or sync_burst: the RTL"),
                 ("matcher.fetch", "line_buffer", "column: the RTL fetches columns"),
                 ("matcher.units", "40", "all: the RTL has a module for each disparity"),
                 ("matcher.rows", "2", "1: the RTL computes one row of results at once"),
