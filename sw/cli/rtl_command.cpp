@@ -114,9 +114,7 @@ std::string parameters(const BoardConfig& board, std::uint64_t frames) {
   const auto policy = std::find(kPolicies.begin(), kPolicies.end(), fpga.arbiter.policy);
   define("POLICY", fmt::format("2'd{}", policy - kPolicies.begin()));
   define("PRIORITY_LIST", packed({fpga.arbiter.priority.begin(), fpga.arbiter.priority.end()}, 3));
-  Numbers words;
-  Numbers turnaround;
-  Numbers latency_2;
+  Numbers words, turnaround, latency_2;
   for (const memory::SsramBankConfig& bank : platform::ssram_configs(board)) {
     words.push_back(static_cast<std::uint64_t>(bank.words));
     turnaround.push_back(static_cast<std::uint64_t>(bank.turnaround_cycles));
@@ -144,10 +142,11 @@ std::string hex_lines(const std::vector<Word>& words) {
 }
 
 std::string hex_lines(const kernels::GrayImage& picture) {
-  std::vector<std::uint32_t> words(picture.pixels.size() / 4);
+  std::string text;
   for (std::size_t pixel = 0; pixel < picture.pixels.size(); ++pixel)
-    words[pixel / 4] |= std::uint32_t{picture.pixels[pixel]} << 8 * (pixel % 4);
-  return hex_lines(words);
+    fmt::format_to(std::back_inserter(text), "{:02x}{}", picture.pixels[pixel ^ 3U],
+                   pixel % 4 == 3 ? "\n" : "");
+  return text;
 }
 
 // For each bank what is in it at first, as $readmemh() reads it.
@@ -199,12 +198,7 @@ int rtl(const RtlOptions& options) {
     simulation->advance();
     if (process::interrupted()) return interrupted("nothing is written");
   }
-  for (const RtlFile& file : rtl_files()) {
-    constexpr std::string_view kBoard = "board/";
-    const bool is_core = file.name.substr(0, kBoard.size()) != kBoard;
-    folder->add(is_core ? fmt::format("rtl/{}", file.name) : std::string(file.name.substr(kBoard.size())),
-                file.text);
-  }
+  for (const auto& [name, text] : rtl_files()) folder->add(std::string(name), text);
   folder->add("board.vh", parameters(input.board, frames));
   folder->add("cycles.hex", hex_lines(simulation->statistics().frame_cycles));
   folder->add("disparity.hex", hex_lines(simulation->last().disparity));

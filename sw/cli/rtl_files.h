@@ -1,17 +1,12 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace stereotlm::cli {
 
-// A file of models/rtl that is compiled in.
-struct RtlFile {
-  std::string_view name;  // below models/rtl: "lane.v", "board/bench.v"
-  std::string_view text;
-};
-
-// Those of the core, and those of the folder `board`: what `rtl` puts around the core.
-const std::vector<RtlFile>& rtl_files();
+// The files that `rtl` writes for any board: name in DIR, and text.
+const std::vector<std::pair<std::string_view, std::string_view>>& rtl_files();
 
 }  // namespace stereotlm::cli
