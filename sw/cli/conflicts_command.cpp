@@ -44,7 +44,7 @@ struct ConflictsOptions : Options {
     }
   }
 
-  RunOptions run{this, nullptr, "; or RUN, a folder that run --out has written"};
+  RunOptions run{this, this, nullptr, "; or RUN, a folder that run --out has written"};
   Option out = Option(this, "--out", "DIR", "The folder to write, created if missing (default: no files)");
   JsonOption json{this};
 };

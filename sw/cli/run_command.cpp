@@ -157,7 +157,7 @@ struct RunCommandOptions : Options {
   using Options::Options;
   void check_together(process::Problems& problems) override { run.check_together("run", problems); }
 
-  RunOptions run{this, this};
+  RunOptions run{this, this, this};
 };
 
 int run(const RunCommandOptions& options) {

@@ -159,7 +159,8 @@ struct PictureOptions {
              {one_of(media::kFitNames)});
 };
 
-// The options of `run`. Those that say what is simulated are options of `conflicts` too.
+// The options of `run`. Those that say what is simulated are options of `conflicts` too, and those of the
+// board and its pictures are options of `rtl`.
 struct RunOptions {
   // Whether no option that says what is simulated is given but BOARD.
   bool has_board_only() const;
@@ -179,6 +180,7 @@ struct RunOptions {
   std::uint64_t recorded_frames() const;
 
   Options* of;
+  Options* mode;                  // of the options that say how often, with what around it, and how
   Options* more;                  // of the options that do not say what is simulated
   std::string beside_board = "";  // what BOARD may be beside a board
   BoardOptions board{of, beside_board};
@@ -190,22 +192,22 @@ struct RunOptions {
              {number<int>("an integer, -8191..8191",
                           [](int columns) { return columns > -8192 && columns < 8192; })});
   Option frames = Option(
-      of, "--frames", "N",
+      mode, "--frames", "N",
       "Frames to deliver, 1 or more; frame f of the cameras, or of the board if preloaded, shows pair f "
       "modulo "
       "the number of pairs (default: as many as there are pairs, 1 with --synthetic)",
       {number<std::uint64_t>("an integer, 1 or more", [](std::uint64_t count) { return count > 0; })});
   SourceOption source{
-      of,
+      mode,
       "camera (the default): cameras of a whole computer; preloaded: pictures appear in their buffers in no "
       "time"};
   Option fidelity =
-      Option(of, "--fidelity", "fast|cycle",
+      Option(mode, "--fidelity", "fast|cycle",
              "How the simulation works; the results are the same to the bit and to the cycle: fast (the "
              "default), or cycle by cycle, every access a transaction",
              {one_of({"fast", "cycle"})});
   Option timing_only =
-      Option(of, "--timing-only", "",
+      Option(mode, "--timing-only", "",
              "Leave out all pixels: the times and counts are the same, and no picture is needed; writes no "
              "disparities");
   Option verify =

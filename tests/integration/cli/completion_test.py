@@ -32,7 +32,7 @@ class Completion(unittest.TestCase):
         return said.split()
 
     def test_commands(self):
-        self.assertEqual(self.offers("r"), ["run", "report"])
+        self.assertEqual(self.offers("r"), ["run", "report", "rtl"])
         self.assertIn("--version", self.offers("--"))
 
     def test_boards_and_files(self):

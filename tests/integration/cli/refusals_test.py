@@ -19,7 +19,7 @@ import completion  # noqa: E402
 
 COMMANDS = (
     "run check boards keys bounds explain calibrate sweep optimise merge allocate plot conflicts diff "
-    "diagram report worker"
+    "diagram report rtl worker"
 ).split()
 SMALL_KEYS = "{image.width: 32, image.height: 24}"
 NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")
@@ -283,6 +283,7 @@ class Paths(ProgramTest):
             (["conflicts", "--synthetic", "1"], "", ""),
             (["report", self.out, "--quick", "--out"], "--out", ".html"),
             (["diagram", "fpl2003", "--out"], "--out", ".svg"),
+            (["rtl", "fpl2003", "--synthetic", "1", "--out"], "--out", ""),
             (["allocate", "fpl2003", "--banks", "8", "--out", self.folder / "a.db", "--write"], "--write",
              ".yaml"),
         ):
@@ -383,7 +384,8 @@ class Outputs(ProgramTest):
         (self.a / "frames").mkdir()
         scene = ["fpl2003", *SMALL, *PRELOADED, "--timing-only"]
         calibrate = ["calibrate", "--synthetic", "1", "--grid", "9x6", "--square-mm", "25", "--out"]
-        of_folders = (["conflicts", *scene, "--out"], ["plot", self.store, "--out"])
+        of_folders = (["conflicts", *scene, "--out"], ["plot", self.store, "--out"],
+                      ["rtl", "fpl2003", *SMALL, "--synthetic", "1", "--out"])
         commands = [(ending, functools.partial(self.command, ending)) for ending in self.writers]
         for words in (self.sweep, ["sweep", "--launcher", "slurm", *self.sweep[1:]], ["run", *scene, "--out"],
                       ["optimise", *scene[:-1], "--minimise", "pins", "--out"],

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -183,9 +184,6 @@ Figures figures_of(const Cycles& cycles, const std::vector<std::uint64_t>& frame
   return all;
 }
 
-// Those of small boards.
-bool is_small(const std::string& core) { return core.rfind("full_size", 0) != 0; }
-
 // Without the figures that are 0.
 Figures without_zeros(const Figures& all) {
   Figures some;
@@ -325,9 +323,7 @@ class Rtl : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> names_of_cores() {
   std::vector<std::string> names;
-  for (const auto& [name, make] : rtl_cores()) {
-    if (is_small(name)) names.push_back(name);
-  }
+  for (const auto& [name, make] : rtl_cores()) names.push_back(name);
   return names;
 }
 INSTANTIATE_TEST_SUITE_P(Set, Rtl, testing::ValuesIn(names_of_cores()),
@@ -340,7 +336,7 @@ void expect_equal(const std::string& core, std::string (*compare)(const json& se
   std::vector<ChildWork> jobs;
   for (std::uint64_t seed = 0; seed < seeds; ++seed)
     jobs.push_back([&set, seed, compare] { return compare(set, seed); });
-  const std::vector<ChildResult> results = run_in_children(jobs, 2);
+  const std::vector<ChildResult> results = run_in_children(jobs, 2, std::chrono::minutes(9));
   for (std::uint64_t seed = 0; seed < seeds && !testing::Test::HasFailure(); ++seed) {
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n"
                                     << results[seed].text
