@@ -120,15 +120,15 @@ module log_filter #(
   reg [HELD_BITS-1:0] line, held;
   wire [HELD_BITS-1:0] previous = adds_first ? line : held;
   reg [SUM_BITS*SIZE-1:0] partial;
-  reg [HALF:0] valid;  // [rows above the slot]: valid bit of the centre's column
+  // [rows above the slot]: valid bit of the centre's column.
+  wire [HALF:0] valid = {previous[HELD_BITS-1:SUM_BITS*(SIZE-1)], adds_valid};
   integer i;
   always @* begin
-    // In row 0 all rows above are equal to it.
+    // In row 0 all rows above are equal to it. What is beyond the middle then belongs to no row of the image.
     partial = sums;
     for (i = 1; i < SIZE; i = i + 1)
       partial[SUM_BITS*i+:SUM_BITS] = sums[SUM_BITS*i+:SUM_BITS] +
-          (adds_top ? partial[SUM_BITS*(i-1)+:SUM_BITS] : previous[SUM_BITS*(i-1)+:SUM_BITS]);
-    valid = {adds_top ? {HALF{adds_valid}} : previous[HELD_BITS-1:SUM_BITS*(SIZE-1)], adds_valid};
+          (adds_top && i <= HALF ? partial[SUM_BITS*(i-1)+:SUM_BITS] : previous[SUM_BITS*(i-1)+:SUM_BITS]);
   end
   always @(posedge clk) begin
     if (adds) begin
