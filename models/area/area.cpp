@@ -239,11 +239,11 @@ void add_row_buffers(const Core& core, Items& items) {
 // column to column is a shift register with a place for each fold (S = 1: registers).
 
 // Sums the results of n pixel pairs of a column: one pair per cycle, or all in one cycle behind a line
-// buffer. A register of the pipeline follows. With one row of results the sum begins anew with each column. With several rows (contract 7.2) it
-// slides down the column: it adds the result of the new pair, and subtracts that of n slots before. Its last
-// R values belong to the R rows. With P lanes (contract 8.1) P pairs come in a cycle: a tree of adders sums
-// their results. With several rows the sum slides P times in a cycle, because each of its values may belong
-// to a row.
+// buffer. A register of the pipeline follows. With one row of results the sum begins anew with each column.
+// With several rows (contract 7.2) it slides down the column: it adds the result of the new pair, and
+// subtracts that of n slots before. Its last R values belong to the R rows. With P lanes (contract 8.1) P
+// pairs come in a cycle: a tree of adders sums their results. With several rows the sum slides P times in a
+// cycle, because each of its values may belong to a row.
 Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int folds) {
   const int n = core.config.window;
   const int bits = core.column_sum_bits(most);
@@ -387,11 +387,11 @@ void add_select_min_tree(const Core& core, Items& items) {
   add("select-min unit B", rows * comparators, rows * tree, items);
 }
 
-// Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. A memory of LUTs holds the
-// last D disparities of each, read at the places of D columns before and of the disparity. The comparison
-// takes an absolute difference. The valid bit of the left pixel itself waits until its column is the middle
-// of the window. A selector gives the disparity or 255. Without a check only the delays and this selector
-// remain. Each row of results has all these parts.
+// Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. Memories of LUTs hold the
+// last D of each, read at the places of D-1 columns before and of the disparity. The comparison takes an
+// absolute difference. The valid bit of the left pixel itself waits until its column is the middle of the
+// window. A selector gives the disparity or 255. Without a check only the delays and this selector remain.
+// Each row of results has all these parts.
 void add_left_right_check(const Core& core, Items& items) {
   const int place_bits = std::max(1, core.disparity_bits);
   const Resources delay = lut_memory(1 << place_bits, kDisparityBits) + adder(place_bits);

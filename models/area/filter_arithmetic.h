@@ -6,8 +6,8 @@
 namespace stereotlm::area {
 
 // The resources of a filter that takes one pixel per cycle, as models/rtl/log_filter.v has it (contract 1.2,
-// paper section 2.4). m is the size of the kernel, h its half width. The rows of a column arrive one after the
-// other, top first. The parts of the filter:
+// paper section 2.4). m is the size of the kernel, h its half width. The rows of a column arrive one after
+// the other, top first. The parts of the filter:
 //   edges    a row of the window has m pixels; beyond an edge of the image it repeats the edge
 //   pairs    in a kernel whose rows are symmetric, two pixels of equal weight are added first
 //   rows     for each row of the kernel the weighted sum of the m pixels; equal kernel rows share a sum. A

@@ -46,7 +46,8 @@ def table_2(cores, blocks):
                                       block["block"] not in OUTSIDE_MATCHING]))
         lines.append([disparities, printed, *(f"{part:.1f} ({part - printed:+.1f})"
                                               for part in (whole, bare, matching))])
-    return study.markdown(["disparities", "printed, %", "whole core", "without filters", "matching alone"], lines)
+    return study.markdown(["disparities", "printed, %", "whole core", "without filters", "matching alone"],
+                          lines)
 
 
 def block_table(blocks):
@@ -91,7 +92,8 @@ def main():
     separate = slices_of([block for block in shown if block["block"] in parts])
     (HERE / "README.md").write_text(study.page(f"""# Silicon
 
-**Question.** What does the core in Verilog take of an XC2V6000? How fast can its clock be, and what limits it?
+**Question.** What does the core in Verilog take of an XC2V6000? How fast can its clock be, and what limits
+it?
 
 Made by `results/silicon/run` (after `./setup tests`). Yosys 0.23 maps each block of
 [models/rtl](../../models/rtl/README.md) to cells of Virtex-II, once for the same parameters, and the core has
@@ -119,12 +121,12 @@ The blocks of the core of the paper (7x7, 80, `log7`):
 
 {block_table(shown)}
 
-- From 80 to 200 disparities each takes {slope:.1f} slices; by the paper's whole percentages 90.1 to 95.7. So the
-  modules and units of figures 6 to 8 explain how Table 2 grows, if the paper packed its slices to
+- From 80 to 200 disparities each takes {slope:.1f} slices; by the paper's whole percentages 90.1 to 95.7. So
+  the modules and units of figures 6 to 8 explain how Table 2 grows, if the paper packed its slices to
   {100 * slope / 95.7:.0f} to {100 * slope / 90.1:.0f} %.
-- The paper's rows leave nothing for what does not grow. Here that is {percent(least - 80 * slope):.1f} % of the
-  FPGA: filters, lanes, multiplexers, control. That is why the whole core is above the print at 80. The core
-  without filters is near all three rows; whether the printed circuits had them is not known.
+- The paper's rows leave nothing for what does not grow. Here that is {percent(least - 80 * slope):.1f} % of
+  the FPGA: filters, lanes, multiplexers, control. That is why the whole core is above the print at 80. The
+  core without filters is near all three rows; whether the printed circuits had them is not known.
 - The crossbar is that of the paper's board, whose ports reach one or two banks each. One with the ports of
   any board at any of 8 banks, and the policy as an input, takes {percent(free['slices']):.1f} %.
 - The matcher of 7x7 and 80 as one flat design takes {flattened['slices']} slices instead of
@@ -146,13 +148,13 @@ What limits them:
 {limits(cores)}
 
 - The paper's core ran at 40 MHz, and its row for 7x7 in Table 1 implies 40.6. Both lie in the range without
-  filter. With it the circuit is too slow: a sum of two pixels, a multiplication and three additions follow each
-  other between two registers. A register behind the multiplication would put the address first again: a
+  filter. With it the circuit is too slow: a sum of two pixels, a multiplication and three additions follow
+  each other between two registers. A register behind the multiplication would put the address first again: a
   multiplication by the width, two additions and the multiplexer of the bank.
 - Neither the window nor the disparities set the clock, as in Table 2, where it is 40 MHz for 80, 160 and 200:
   the chain and the tree have a comparator between two registers.
-- "More than 30 frames per second" with 7x7 needs 65 MHz. The paths within the matcher but for the filter allow
-  {min(float(core['matcher_from_mhz']) for core in bare):.0f} to
+- "More than 30 frames per second" with 7x7 needs 65 MHz. The paths within the matcher but for the filter
+  allow {min(float(core['matcher_from_mhz']) for core in bare):.0f} to
   {max(float(core['matcher_to_mhz']) for core in bare):.0f} MHz (left-right check: its memories are read and
   compared in one cycle). So filter, address and check need a register each.
 

@@ -21,7 +21,8 @@ LUTS = {"LUT1": 1, "LUT2": 1, "LUT3": 1, "LUT4": 1, "INV": 1, "RAM16X1S": 1, "RA
 FLIP_FLOPS = {"FDCE", "FDPE", "FDRE", "FDSE"}
 CARRY = {"MUXCY", "XORCY"}
 STRAPS = {"table_latency_2", "image_latency_2"}  # constants of a board
-COMBINATIONAL = {"LUT1", "LUT2", "LUT3", "LUT4", "INV", "MULT18X18", "MUXF5", "MUXF6", "MUXF7", "MUXF8", *CARRY}
+COMBINATIONAL = {"LUT1", "LUT2", "LUT3", "LUT4", "INV", "MULT18X18", "MUXF5", "MUXF6", "MUXF7", "MUXF8",
+                 *CARRY}
 
 # ns of speed grade -4: README.md says where they are from.
 T_CKO = 0.57  # clock to the output of a flip-flop
@@ -116,14 +117,12 @@ class Synthesis:
         return netlist
 
     def elaborated(self, number, parameters):
-        """The modules of a core, before synthesis: a file for Yosys, and the cells of each that are blocks."""
+        """A core before synthesis: a file for Yosys, and the names of the modules that are blocks."""
         out = self.folder / f"core{number}"
         flat = [f"setattr -mod -set keep_hierarchy 1 {' '.join(f'*{name}*' for name in BLOCKS)}", "flatten"]
         yosys([*read("stereo_core", parameters), "proc", *flat, f"write_rtlil {out}.il",
                f"write_json {out}.json"])
-        modules = json.loads(pathlib.Path(f"{out}.json").read_text())["modules"]
-        return out, {name: [cell["type"] for cell in module["cells"].values() if cell["type"] in modules]
-                     for name, module in modules.items()}
+        return out, list(json.loads(pathlib.Path(f"{out}.json").read_text())["modules"])
 
     def synthesized(self, core, module, number):
         if base_name(module) == "crossbar":

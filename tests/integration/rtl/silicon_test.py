@@ -63,7 +63,8 @@ class Silicon(Case):
 
     def test_a_block_takes_what_is_counted(self):
         parts = counted(7, 16, "none")
-        for top, count, parameters in (("window_module", 16, {}), ("select_min_chain", 1, {"DISPARITIES": 16})):
+        for top, count, parameters in (("window_module", 16, {}),
+                                       ("select_min_chain", 1, {"DISPARITIES": 16})):
             luts = count * made(self.cells(top, parameters))[0]
             self.near(luts, parts[top,][0], top)
 
@@ -81,7 +82,8 @@ class Silicon(Case):
             return {"type": kind, "connections": {pin: [net] for pin, net in pins.items()},
                     "port_directions": directions}
         # A register, two LUTs, the carry chain and a register; its output goes to a pin.
-        netlist = {"ports": {"c": {"direction": "input", "bits": [2]}, "q": {"direction": "output", "bits": [8]}},
+        netlist = {"ports": {"c": {"direction": "input", "bits": [2]},
+                             "q": {"direction": "output", "bits": [8]}},
                    "cells": dict(enumerate((cell("FDRE", C=2, D=8, Q=3), cell("LUT1", I0=3, O=4),
                                             cell("LUT1", I0=4, O=5), cell("MUXCY", S=5, DI="0", CI="0", O=6),
                                             cell("XORCY", LI="0", CI=6, O=7), cell("FDRE", C=2, D=7, Q=8))))}
