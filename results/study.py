@@ -27,7 +27,7 @@ def searched(path):
         if not (rates := row.get("frames_per_second")):
             continue  # none counts
         found[row["banks"]] = {
-            "allocations": row["allocations"], "simulated": row["simulated"],
+            "allocations": row["allocations"],
             "best": rates.get("core", rates.get("steady")),
             "uncertainty": rates.get("steady_uncertainty", 0), "bound": row["bound_frames_per_second"],
             "tied": row["tied"], "witness": ", ".join(map(placed, row["sets"]))}
@@ -59,8 +59,8 @@ def best_table(searches, banks):
 
 
 def witness_table(rates):
-    return markdown(["banks", "allocations", "simulated", "best", "tied", "one of them"],
-                    [[banks, row["allocations"], row["simulated"],
+    return markdown(["banks", "allocations", "best", "tied", "one of them"],
+                    [[banks, row["allocations"],
                       f"{row['best']:.3f}" + (f" ± {row['uncertainty']:.3f}" if row["uncertainty"] else ""),
                       row["tied"], row["witness"]]
                      for banks, row in rates.items()])

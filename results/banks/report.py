@@ -102,12 +102,11 @@ The whole computer (`computer.json`); behind ± stands what 120 frames leave ope
 
 {queues}
 
-**Limits.** Rates of the computer are known up to ± some tenths of a percent. The bank of a buffer is the
-only
+**Limits.** Rates of the computer are known up to ± some tenths of a percent. The bank of a buffer is the only
 thing that moves; words of one bank are not split between buffers of a list. Placements that differ by an
-exchange of alike banks count as one. In the computer an allocation that is slower than another with as many
-banks is not simulated, or not to its end; `simulated` says how many were. Other windows, cameras and numbers
-of buffers need a search of their own: give `--set` to `allocate`.
+exchange of alike banks count as one. An allocation whose bound shows that another with as many banks is
+faster is not simulated. Other windows, cameras and numbers of buffers need a search of their own: give
+`--set` to `allocate`.
 """
 
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
@@ -9,21 +12,21 @@
 #include "sw/cli/allocation_report.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
-#include "sw/explore/search/allocation_search.h"
+#include "sw/cli/searching.h"
+#include "sw/explore/optimise/search.h"
+#include "sw/explore/optimise/search_store.h"
+#include "sw/explore/plan/plan.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/sweep/sweep.h"
-#include "sw/files/aside.h"
+#include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/runs/progress.h"
+#include "sw/runs/simulation/board_model.h"
 #include "sw/runs/simulation/simulate_point.h"
 #include "sw/runs/sources/open_source.h"
 
 namespace stereotlm::cli {
 namespace {
 
-using explore::AllocationSearch;
-using explore::BestPlacement;
-using explore::Placement;
 using platform::BoardConfig;
 
 constexpr double kDefaultKeepPercent = 99;
@@ -47,7 +50,7 @@ struct AllocateOptions : Options {
                        {number<double>("a percentage above 0 and at most 100",
                                        [](double percent) { return percent > 0 && percent <= 100; })});
   Option out = Option(this, "--out", "DB",
-                      "The database of the boards that are simulated, written or continued (default: none)");
+                      "The database of the search and its certificate, written or continued (default: none)");
   Option write = Option(this, "--write", "F.yaml", "Write the board with the best allocation as a board file",
                         {ends_in(".yaml")});
   JsonOption json{this};
@@ -55,75 +58,96 @@ struct AllocateOptions : Options {
   int most_banks() const { return banks.number<int>().value_or(0); }
 };
 
-// The placement as text: "left_image bank0 bank1, .., right_lut bank0".
-std::string text_of(const BoardConfig& board, const Placement& placement) {
-  return explore::allocation_text(explore::placed(board, placement));
-}
-
 // Simulates the best allocation for each number of banks, with pixels: an ideal host supplies a different
 // pair for each frame. Throws if two allocations compute different disparities. For the core alone, also
 // throws if an allocation needs another number of cycles than the search has found. Returns nullopt if there
 // are no allocations, and after an interrupt.
-std::optional<ComparedPixels> compare_pixels(const BoardConfig& board, const platform::Tables& tables,
-                                             const explore::PointRun& search,
-                                             const std::vector<BestPlacement>& all) {
+std::optional<ComparedPixels> compare_pixels(const AllocationReport& report, const platform::Tables& tables) {
   runs::ProgressLine line("the best allocations are simulated with pixels");
   process::Problems none;
   runs::InputPictures scene;
   scene.synthetic = 1;
-  const auto pairs = runs::open_source(scene, &board, none).pairs;  // a different pair for each frame
-  ComparedPixels compared = {
-      0, search.camera ? platform::allocation_period_frames(board) : explore::frames_of(search, board)};
+  const auto pairs = runs::open_source(scene, &report.board, none).pairs;  // a different pair for each frame
+  const std::uint64_t turn = platform::allocation_period_frames(report.board);
+  ComparedPixels compared = {0, report.run.camera ? turn : report.run.frames};
   std::string first;
-  const Placement* first_witness = nullptr;
-  for (const BestPlacement& best : all) {
-    if (process::interrupted()) return std::nullopt;
-    if (best.tied == 0) continue;
-    line.show(compared.allocations, all.size(), [](double) { return "pixels are compared"; });
-    const auto run =
-        runs::simulate_pixels(explore::placed(board, best.witness), tables, *pairs, compared.frames);
+  const BoardConfig* first_board = nullptr;
+  for (const BestAllocations& best : report.all) {
+    if (best.ties.empty()) continue;
+    line.show(compared.allocations, report.all.size(), [](double) { return "pixels are compared"; });
+    const auto& [count, board, rate, possible] = best.ties.front();
+    const auto run = runs::simulate_pixels(board, tables, *pairs, compared.frames);
     if (process::interrupted()) return std::nullopt;
     if (compared.allocations++ == 0) {
       first = run.disparities_sha256;
-      first_witness = &best.witness;
+      first_board = &board;
     }
     if (run.disparities_sha256 != first) {
       throw std::runtime_error(fmt::format("the disparities of {} differ from those of {}",
-                                           text_of(board, best.witness), text_of(board, *first_witness)));
+                                           allocation_text(board), allocation_text(*first_board)));
     }
-    if (!search.camera && run.cycles != best.outcome.cycles) {
-      throw std::runtime_error(fmt::format("{}: {} cycles with pixels, {} found",
-                                           text_of(board, best.witness), run.cycles, best.outcome.cycles));
+    if (!report.run.camera && run.cycles != rate.cycles) {
+      throw std::runtime_error(fmt::format("{}: {} cycles with pixels, {} found", allocation_text(board),
+                                           run.cycles, rate.cycles));
     }
   }
-  if (process::interrupted() || compared.allocations == 0) return std::nullopt;
+  if (compared.allocations == 0) return std::nullopt;
   return compared;
 }
 
-// Comparing allocations may take long. An interrupt during that time ends the process.
-AllocationSearch search_of(const BoardConfig& board, int banks, const explore::PointRun& run,
-                           const AllocationSearch::BoundOf& bound) {
-  runs::ProgressLine line(fmt::format("all allocations to at most {} banks are compared", banks));
+// The placements of the board, by the number of banks that they use.
+std::map<int, std::uint64_t> placements_of(const BoardConfig& board, int banks) {
+  std::map<int, std::uint64_t> found;
   try {
-    return AllocationSearch(board, banks, run, bound, [&line](std::uint64_t done, std::uint64_t of) {
-      line.show(done, of, [=](double) { return fmt::format("{}/{} allocations", done, of); });
-    });
+    const explore::Placements all(board, banks, 1);
+    std::vector<int> banks_of_use;
+    for (std::uint32_t use = 0; use < all.uses(); ++use) {
+      const std::vector<bool> used = platform::used_banks(all.placed(board, all.first_of_use(use)));
+      banks_of_use.push_back(static_cast<int>(std::count(used.begin(), used.end(), true)));
+    }
+    for (std::size_t number = 0; number < all.size(); ++number) ++found[banks_of_use[all.use(number)]];
   } catch (const std::length_error& error) {
     process::refuse(
         fmt::format("--banks = {}: {}; give fewer, or a board with fewer buffers or more banks alike", banks,
                     error.what()));
   }
+  return found;
 }
 
 // "; with N some do": N is the least number of banks above `banks` with which an allocation fits; empty if
 // there is none.
-std::string fewest_text(const BoardConfig& board, int banks, const explore::PointRun& run) {
+std::string fewest_text(const BoardConfig& board, int banks) {
   const auto most = static_cast<int>(board.banks.size());
-  const auto no_bound = [](const BoardConfig&) { return 0.0; };
   while (++banks <= most) {
-    if (search_of(board, banks, run, no_bound).fitting() > 0) return fmt::format("; with {} some do", banks);
+    if (!placements_of(board, banks).empty()) return fmt::format("; with {} some do", banks);
   }
   return "";
+}
+
+// The best allocations that a search has found.
+void take_best(explore::Search& search, AllocationReport& report) {
+  for (const explore::FrontPoint& point : search.front()) {
+    const explore::Search::Board first = search.board(point.first.front());
+    const std::map<std::string, double> figures = search.results_of(point.first.front());
+    RatedAllocations rated = {point.boards, *first.board, {}, point.values[0]};
+    if (report.run.camera) {
+      rated.rate = {figures.at("frames_per_second.steady"),
+                    figures.at("frames_per_second.steady_uncertainty"), 0};
+    } else {
+      const auto latency = static_cast<std::uint64_t>(report.board.fpga.pipeline_latency_cycles);
+      rated.rate = {figures.at("frames_per_second.core"), 0,
+                    static_cast<std::uint64_t>(figures.at("cycles")) + report.run.frames * latency};
+    }
+    const auto best = std::find_if(report.all.begin(), report.all.end(), [&](const BestAllocations& one) {
+      return one.banks == static_cast<int>(point.values[1].least);
+    });
+    best->ties.push_back(std::move(rated));
+  }
+  for (BestAllocations& best : report.all)
+    std::stable_sort(best.ties.begin(), best.ties.end(),
+                     [](const RatedAllocations& a, const RatedAllocations& b) {
+                       return a.rate.frames_per_second > b.rate.frames_per_second;
+                     });
 }
 
 // Whether the file is the board as --write writes it, with any allocation.
@@ -161,8 +185,6 @@ std::uint64_t frames_of(const AllocateOptions& options, const BoardConfig& board
 }
 
 void check(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
-  if (const auto problem = explore::bank_names_problem(board))
-    problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
   if (options.most_banks() > static_cast<int>(board.banks.size())) {
     problems.add(fmt::format(
         "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
@@ -190,67 +212,71 @@ int allocate(const AllocateOptions& options) {
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
   const platform::Tables tables = loaded.tables();
-  const bool camera = options.source.is_camera();
   const int banks = options.most_banks();
-  const explore::PointRun run = {camera, frames_of(options, *board),
-                                 loaded.calibration ? runs::sha256_of(loaded.calibration->tables) : ""};
-  const platform::FrameAccesses accesses = platform::frame_accesses(*board, tables);
-  const AllocationSearch::BoundOf bound = [&](const BoardConfig& one) {
-    return camera ? platform::steady_bound(one, accesses) : platform::core_bound(one, accesses).core;
-  };
-  AllocationSearch search = search_of(*board, banks, run, bound);
-  if (search.fitting() == 0) {
-    process::refuse(fmt::format("--banks = {}: none of {} allocations fits into so few banks{}", banks,
-                                search.placements(), fewest_text(*board, banks, run)));
-  }
-  process::catch_interrupts();
-  std::vector<std::string> names;
-  for (const platform::BankConfig& bank : board->banks) names.push_back(bank.name);
-  std::optional<files::TemporaryFolder> unkept;  // of the database without --out
-  explore::SweepOptions sweep;
-  process::attempt_or_refuse("", [&] {
-    if (!options.out.is_given()) unkept.emplace();
-    sweep.store = unkept ? (unkept->path() / "boards.db").string() : options.out.text();
-  });
-  process::attempt_or_refuse("--out ", [&] {
-    const explore::StoreLock lock(sweep.store);
-    explore::Store(sweep.store, sweep.version).check_banks(names);
-  });
-  runs::PointSimulator simulator = loaded.simulator();
-  const auto evaluate = [&](const explore::Point& point) {
-    const double rate = search.rate_to_reach(point.number);
-    return simulator(point, [rate](const platform::SteadyRate& so_far) {
-      return so_far.frames >= explore::kSteadyFrames && so_far.frames_per_second + so_far.uncertainty < rate;
-    });
-  };
-  runs::ProgressLine line(fmt::format("allocations are simulated, each for {} frames", run.frames),
-                          runs::stepped_text(*board, tables, camera));
-  AllocationReport report = {search,
-                             *board,
-                             bound,
-                             options.out.text(),
+  AllocationReport report = {*board,
+                             {options.source.is_camera(), frames_of(options, *board), ""},
                              banks,
                              options.keep.number<double>().value_or(kDefaultKeepPercent),
                              options.board.words_without_allocation()};
-  report.is_whole = explore::simulate(search, evaluate, sweep, [&line](const explore::SearchProgress& done) {
-    line.show(done.done, done.done + done.most_left,
-              [&done](double seconds) { return runs::progress_text(done, seconds); });
-    return !process::interrupted();
+  for (const auto& [used, count] : placements_of(*board, banks)) report.all.push_back({used, count});
+  if (report.all.empty())
+    process::refuse(fmt::format("--banks = {}: no allocation fits into so few banks{}", banks,
+                                fewest_text(*board, banks)));
+  // Allocations with as many banks are compared: one has neither more nor fewer.
+  const std::string rate = report.run.camera ? "frames_per_second.steady" : "frames_per_second.core";
+  const std::string text = fmt::format(
+      "run: {{source: {}, frames: {}}}\nplacements: {{banks: {}}}\n"
+      "maximise: [{}, banks_used]\nminimise: banks_used\n",
+      report.run.camera ? "camera" : "preloaded", report.run.frames, banks, rate);
+  const std::string file = platform::to_yaml(*board);
+  explore::Plan plan = explore::Plan::load("allocate", "board.yaml", &text, &file);
+  std::string tables_hash;
+  if (loaded.calibration) {
+    tables_hash = runs::sha256_of(loaded.calibration->tables);
+    plan.use_calibration(tables_hash, board->image.width, board->image.height, std::nullopt);
+  }
+  const explore::BoardModel model =
+      runs::board_model(loaded.calibration ? &loaded.calibration->tables : nullptr);
+  explore::Search search(plan, plan.wishes(), model, std::max(1U, std::thread::hardware_concurrency()));
+  std::optional<explore::StoreLock> lock;
+  std::optional<explore::SearchStore> store;
+  process::attempt_or_refuse("--out ", [&] {
+    if (!options.out.is_given()) return;
+    lock.emplace(options.out.text());
+    store.emplace(
+        options.out.text(),
+        explore::SearchStore::Asked{
+            {"version", process::kVersion}, {"plan", text}, {"board", file}, {"tables", tables_hash}});
   });
-  line.erase();
-  report.all = search.best();
-  report.best = search.best_of_all();
-  if (report.is_whole) report.pixels = compare_pixels(*board, tables, run, report.all);
-  if (written && report.best) {
-    written->write(platform::to_yaml(explore::placed(*board, report.best->witness)));
+  process::catch_interrupts();
+  if (store && store->is_finished()) {
+    search.set_front(store->front(plan.wishes().goals.size()));
+    report.is_whole = true;
+  } else {
+    report.is_whole = run_search(search, store ? &*store : nullptr, true);
+    if (!report.is_whole) report.open_bound = search.state().bound;
+    if (store && report.is_whole) store->finish(search);
+  }
+  report.simulated = search.state().simulated;
+  take_best(search, report);
+  const platform::FrameAccesses accesses = platform::frame_accesses(*board, tables);
+  for (BestAllocations& best : report.all) {
+    if (best.ties.empty()) continue;
+    const BoardConfig& one = best.ties.front().first;
+    best.bound =
+        report.run.camera ? platform::steady_bound(one, accesses) : platform::core_bound(one, accesses).core;
+  }
+  const std::optional<BestOfAll> top = report.best();
+  if (report.is_whole) report.pixels = compare_pixels(report, tables);
+  if (written && top) {
+    written->write(platform::to_yaml(top->fastest->first));
     written->commit();
     report.written = options.write.text();
   }
   process::print(options.json.is_given() ? json_text(allocation_report_document(report))
                                          : allocation_report_text(report));
   if (!process::interrupted()) return kDone;
-  return interrupted(unkept ? "nothing is kept: give --out DB to resume later"
-                            : "run the same command to resume");
+  return interrupted(resume_text(store.has_value()));
 }
 
 }  // namespace
@@ -259,12 +285,12 @@ void add_allocate(Commands& commands) {
   add_command(
       commands, "allocate", "Find the best allocation of the buffers to banks, and prove it", allocate,
       "Every different way to place the buffers in at most N banks is tried; all other keys stay.\n"
-      "Placements that differ only by an exchange of banks that are alike count as one, and those that are\n"
-      "known to be slower than another of as many banks are not simulated, or not to the end. For each\n"
-      "number of banks: how many placements fit, the best frame rate beside its bound, how many tie, and\n"
-      "one of them. Placements tie if the uncertainty of their rates leaves open which is faster. An\n"
-      "allocation with which captures lose pixels does not count. Last the command that runs the best\n"
-      "allocation: the fastest of those with the fewest banks that tie.\n"
+      "Placements that differ only by an exchange of banks that are alike count as one, and those whose\n"
+      "bound shows that another of as many banks is faster are not simulated. For each number of banks:\n"
+      "how many placements fit, the best frame rate beside its bound, how many tie, and one of them.\n"
+      "Placements tie if the uncertainty of their rates leaves open which is faster. An allocation with\n"
+      "which captures lose pixels does not count. Last the command that runs the best allocation: the\n"
+      "fastest of those with the fewest banks that tie. It is a case of optimise, which also varies keys.\n"
       "Ctrl-C ends the search: the best so far is printed, and written by --write, with the most that\n"
       "another allocation can be better. DB is continued: the same command resumes. Without --out\n"
       "nothing is kept.\n"

@@ -21,12 +21,12 @@
 #include "platform/yaml/yaml_tree.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
+#include "sw/cli/searching.h"
 #include "sw/explore/optimise/key_effects.h"
 #include "sw/explore/optimise/search.h"
 #include "sw/explore/optimise/search_store.h"
 #include "sw/explore/plan/plan.h"
 #include "sw/files/text_forms.h"
-#include "sw/runs/progress.h"
 #include "sw/runs/simulation/board_model.h"
 #include "sw/runs/sources/calibration_input.h"
 
@@ -115,6 +115,14 @@ bool is_plan(const std::string& name, const std::string* text) {
   }
 }
 
+// Whether a goal or a requirement names a figure.
+bool names(const explore::SearchWishes& wishes, const std::string& figure) {
+  const auto has = [&](const explore::Condition& one) { return one.text.find(figure) != std::string::npos; };
+  return std::any_of(wishes.goals.begin(), wishes.goals.end(),
+                     [&](const auto& goal) { return has(goal.figure); }) ||
+         std::any_of(wishes.requirements.begin(), wishes.requirements.end(), has);
+}
+
 // Whether a goal or a condition names a figure that only a whole computer has.
 bool names_computer(const OptimiseOptions& options) {
   for (const Option* const option : {&options.requirements, &options.maxima, &options.minima}) {
@@ -184,6 +192,7 @@ explore::SearchStore::Asked asked_of(const Question& question, const std::string
   explore::SearchStore::Asked asked = {{"version", process::kVersion},
                                        {"plan", question.text},
                                        {"board", question.plan->board_text()},
+                                       {"pictures", question.plan->run().pairs},
                                        {"tables", tables}};
   std::string goals;
   for (const auto& goal : question.wishes.goals)
@@ -192,15 +201,6 @@ explore::SearchStore::Asked asked_of(const Question& question, const std::string
   goals += fmt::format("placements {} {}\n", question.wishes.most_banks, question.wishes.most_parts);
   asked.emplace("goals", goals);
   return asked;
-}
-
-std::string progress_text(const explore::SearchState& state, double seconds) {
-  std::string text = fmt::format("{:.3g} boards: {} open, {} simulated", static_cast<double>(state.boards),
-                                 state.open, state.simulated);
-  if (state.has_best)
-    text += fmt::format(", best {:.6g}, bound {:.6g}, gap {:.2f} %", state.best, state.bound,
-                        state.best == 0 ? 0 : 100 * std::abs(state.bound / state.best - 1));
-  return text + fmt::format(", {:.0f} s", seconds);
 }
 
 std::string value_text(const explore::Range& value) {
@@ -386,8 +386,15 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
       text += "the first of them: " + command_of(answer.question, *board.board, board.run) + '\n';
     }
   }
-  text += answer.is_proven ? "proven: every other board was simulated, or is ruled out by a bound\n"
-                           : fmt::format("not proven: {}\n", progress_text(search.state(), answer.seconds));
+  text += answer.is_proven
+              ? "proven: every other board was simulated, or is ruled out by a bound\n"
+              : fmt::format("not proven: {}\n",
+                            progress_text(search.state(), search.wishes().goals.size() == 1, answer.seconds));
+  const auto& figures = explore::accuracy_figures();
+  const bool judges = std::any_of(figures.begin(), figures.end(), [&](const std::string& figure) {
+    return names(answer.question.wishes, figure);
+  });
+  if (judges) return text;
   const std::vector<std::string> varied = plan.varied();
   const bool changes_disparities = std::any_of(varied.begin(), varied.end(), [](const std::string& path) {
     const platform::Key* const key = platform::find_key(path);
@@ -397,35 +404,15 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
   return text;
 }
 
-// Runs the search until it ends, is interrupted, or its time is over. Returns whether it has ended.
-bool run(Search& search, const explore::SearchStore* store, std::optional<double> most_seconds) {
-  constexpr std::chrono::seconds kBetweenWrites{1};
-  if (store != nullptr) search.know(store->results());
-  runs::ProgressLine line("boards are ruled out by bounds, or simulated");
-  const auto start = Clock::now();
-  auto next_write = start + kBetweenWrites;
-  const bool is_whole = search.run([&](const explore::SearchState& state) {
-    line.show(state.boards - state.open, state.boards,
-              [&](double seconds) { return progress_text(state, seconds); });
-    if (store != nullptr && Clock::now() >= next_write) {
-      store->add(search.take_results());
-      next_write = Clock::now() + kBetweenWrites;
-    }
-    const std::chrono::duration<double> seconds = Clock::now() - start;
-    return !process::interrupted() && !(most_seconds && seconds.count() > *most_seconds);
-  });
-  if (store != nullptr) store->add(search.take_results());
-  return is_whole;
-}
-
 int optimise(const OptimiseOptions& options) {
   Question question = question_of(options);
-  if (!question.plan->pairs().empty() || !question.plan->seeds().empty())
-    process::refuse(
-        "run.pairs, run.synthetic: a search does not compute accuracy: leave them out, and sweep the front");
   const auto calibration = calibration_of(*question.plan, options.calibration, options.sent);
   const explore::Plan& plan = *question.plan;
-  const explore::BoardModel model = runs::board_model(calibration ? &calibration->tables : nullptr);
+  process::Problems problems;
+  runs::PointQuality quality(*question.plan, problems);
+  problems.check();
+  const explore::BoardModel model =
+      runs::board_model(calibration ? &calibration->tables : nullptr, std::move(quality));
   const unsigned processes =
       options.jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
   std::unique_ptr<Search> search;
@@ -451,7 +438,8 @@ int optimise(const OptimiseOptions& options) {
     search->set_front(store->front(question.wishes.goals.size()));
     answer.boards = store->boards();
   } else {
-    answer.is_proven = run(*search, store ? &*store : nullptr, seconds_of(options.within.text()));
+    answer.is_proven = run_search(*search, store ? &*store : nullptr, question.wishes.goals.size() == 1,
+                                  seconds_of(options.within.text()));
     answer.boards = search->state().boards;
     if (store && answer.is_proven) store->finish(*search);
   }
@@ -464,8 +452,7 @@ int optimise(const OptimiseOptions& options) {
   if (asked) text += "this board " + judgement_text(search->judge(*asked, plan.run(), places), *search);
   process::print(text);
   if (!process::interrupted()) return kDone;
-  return interrupted(store ? "run the same command to resume"
-                           : "nothing is kept: give --out DB to resume later");
+  return interrupted(resume_text(store.has_value()));
 }
 
 }  // namespace

@@ -57,14 +57,6 @@ std::string progress_text(std::uint64_t done, std::uint64_t of, const std::strin
                                                    static_cast<double>(done - before)));
 }
 
-std::string progress_text(const explore::SearchProgress& progress, double seconds) {
-  constexpr std::uint64_t kFewestSimulated = 8;
-  std::string text = fmt::format("{} boards simulated, {} left at most", progress.done, progress.most_left);
-  if (!progress.is_narrowed || progress.simulated < kFewestSimulated) return text;
-  const double rate = static_cast<double>(progress.simulated) / seconds;
-  return text + fmt::format(" ({} at this rate)", time_text(static_cast<double>(progress.most_left) / rate));
-}
-
 ProgressLine::ProgressLine(const std::string& work, const std::string& stepped,
                            std::chrono::milliseconds between_notes)
     : work_(stepped.empty() ? work : work + ", cycle by cycle because of " + stepped),

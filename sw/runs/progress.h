@@ -5,8 +5,6 @@
 #include <functional>
 #include <string>
 
-#include "sw/explore/search/allocation_search.h"
-
 namespace stereotlm::runs {
 
 // The figures from which the progress of a run is computed. A running frame counts in proportion to its
@@ -21,10 +19,6 @@ struct RunState {
 
 // For a run: "1.25/4 frames   31.2 %   8.40 M cycles/s   3.91 frames/s   0:08 left"
 std::string progress_text(const RunState& state, double seconds);
-
-// For a search: "332 boards simulated, 120 left at most (0:05 at this rate)". The time is left out until
-// most_left is narrowed and 8 boards were simulated.
-std::string progress_text(const explore::SearchProgress& progress, double seconds);
 
 // For work in equal pieces: "12/48 boards simulated, 0:15 left". `before`: pieces that were done before
 // `seconds` began. The time is left out until another one is done.

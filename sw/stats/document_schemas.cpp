@@ -42,11 +42,6 @@ Schema allocate_schema() {
   Schema banks = object_of({
       {"banks", from_one()},
       {"allocations", from_one(), "Allocations to so many banks that fit."},
-      {"simulated", count(), "Allocations whose rate is known, or whose run was given up."},
-      {"given_up", count(),
-       "Runs that were given up because they are slower than another with as many banks."},
-      {"losing_pixels", count(), "Simulated allocations that lose pixels, and do not count."},
-      {"failed", count(), "Allocations that could not be simulated."},
       {"tied", count(), "Allocations that tie for the best with so many banks. 0: none counts."},
       {"frames_per_second?", rates},
       {"bound_frames_per_second?", any_number(), "Upper bound of the rate of the allocation in sets."},
@@ -62,8 +57,8 @@ Schema allocate_schema() {
           {"source", source(), "The whole computer, or the core alone."},
           {"frames", from_one(), "Frames of a run."},
           {"most_banks", from_one(), "The value of --banks."},
-          {"allocations", from_one(), "Different allocations."},
-          {"fitting_allocations", from_one(), "Those whose banks hold their buffers."},
+          {"allocations", from_one(), "Different allocations whose banks hold their buffers."},
+          {"simulated", count(), "Runs of this command; the others were known, or ruled out."},
           {"best?", best,
            "Of the allocations that tie for the best of all, the fastest of those with the fewest banks. "
            "Allocations tie if none of them is known to be slower than another. Absent if none counts."},

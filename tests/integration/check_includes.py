@@ -39,7 +39,9 @@ ROOMS = {
     "sw/explore/sweep": [
         "sw/explore/plan", "sw/explore/store", "sw/files", "sw/process", "sw/sqlite", "sw/stats"
     ],
-    "sw/explore/search": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/sqlite"],
+    "sw/explore/optimise": [
+        "sw/explore/plan", "sw/explore/store", "sw/files", "sw/process", "sw/sqlite", "sw/stats"
+    ],
     "sw/explore/slurm": ["sw/explore/plan", "sw/explore/store", "sw/explore/sweep", "sw/files", "sw/process"],
     "sw/trace": ["sw/files", "sw/process", "sw/sqlite"],
     "sw/runs": [

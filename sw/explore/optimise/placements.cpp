@@ -160,7 +160,8 @@ class Placements::Builder {
       place(board, placed_);
       if (!broken_rules(board, [](const std::string&) { return true; }).empty()) return;
     }
-    if (all_.size() == kMost) throw std::length_error(fmt::format("more than {} placements", kMost));
+    if (all_.size() == kMost)
+      throw std::length_error(fmt::format("more than {} different placements", kMost));
     for (const std::vector<int>& banks : placed_) {
       for (std::size_t part = 0; part < all_.most_parts_; ++part)
         all_.banks_.push_back(part < banks.size() ? static_cast<std::uint8_t>(banks[part]) : kNone);

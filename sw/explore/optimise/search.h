@@ -39,6 +39,9 @@ struct BoardModel {
   std::function<double(const platform::BoardConfig& board)> steady_bound;
   // All figures of a point.
   std::function<Figures(const Point& point)> simulate;
+  // The accuracy_figures() over the pictures of the plan; a figure without a value is missing. Null if the
+  // plan has no pictures.
+  std::function<std::map<std::string, double>(const platform::BoardConfig& board)> accuracy = nullptr;
 };
 
 // The figures of BoardModel::figures_of_cycles.
@@ -76,8 +79,8 @@ struct SearchState {
   std::uint64_t boards = 0;     // of the space
   std::uint64_t open = 0;       // not decided yet, at most
   std::uint64_t simulated = 0;  // runs
-  double best = 0;              // of the first goal, if there is one goal
-  double bound = 0;             // of the open boards
+  double best = 0;              // of the first goal
+  double bound = 0;             // of the first goal: of the open boards and the best
   bool has_best = false;
 };
 
@@ -121,6 +124,9 @@ class Search {
     std::string reason;
   };
   Board board(const BoardNumber& number);
+  // The results of the simulation of a board, by the names of result_names() or of core_figures(). Simulates
+  // it if that is not known.
+  std::map<std::string, double> results_of(const BoardNumber& number);
 
   // Why a board is not on the front.
   struct Judgement {
@@ -165,6 +171,7 @@ class Search {
   struct Node;
   struct Heap;
 
+  bool compute_accuracy(const std::function<bool()>& keep_going);
   bool assess(const std::function<bool()>& keep_going);
   bool step(const std::function<bool()>& keep_going);
   void add_to_front(const std::vector<Range>& values, std::uint64_t combination,

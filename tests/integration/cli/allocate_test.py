@@ -4,6 +4,7 @@ import contextlib
 import itertools
 import json
 import os
+import pathlib
 import re
 import shlex
 import signal
@@ -15,7 +16,7 @@ import program
 from program import HEIGHT, PRELOADED, WIDTH, ProgramTest, run, sets, wait_until
 
 # A line of the table.
-ROW = re.compile(r" *(?P<banks>\d+) +(?P<allocations>\d+) +(?P<simulated>\d+) +(?P<rate>[\d.]+( ± [\d.]+)?)"
+ROW = re.compile(r" *(?P<banks>\d+) +(?P<allocations>\d+) +(?P<rate>[\d.]+( ± [\d.]+)?)"
                  r" +(?P<percent>[\d.]+) +(?P<bound>[\d.]+) +(?P<tied>\d+)  (?P<named>\w.*)$")
 BUFFERS = ["left_image", "right_image", "disparity", "left_lut", "right_lut"]
 # Five buffers, five banks, of which the last two are of another kind.
@@ -65,6 +66,10 @@ def placements():
             yield banks
 
 
+def children_of(process):
+    return pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text()
+
+
 def rate_text(rates):
     """Rates of stats.json as they are printed."""
     if "steady" not in rates:
@@ -81,7 +86,7 @@ class Allocate(ProgramTest):
         return self.file("board.yaml", text)
 
     def allocate(self, *more, board=None, banks=5):
-        return run("allocate", board or self.board(), "--banks", banks, "--out", self.store, *more)
+        return run("allocate", board or self.board(), "--banks", banks, *more)
 
     def found(self, process, status=0):
         """The JSON document of a search, which is all that it prints."""
@@ -143,7 +148,7 @@ class Allocate(ProgramTest):
         expected, count = self.rates_of_all(text, source, frames)
         document = self.found(self.allocate("--source", source, *more, "--json", board=self.board(text)))
         said = self.succeeds(self.allocate("--source", source, *more, board=self.board(text)))
-        self.assertIn(f"in at most 5 of 5 banks: {count} different allocations, {count} of them fit", said)
+        self.assertIn(f"in at most 5 of 5 banks: {count} different allocations, ", said)
         self.assertEqual(document["frames"], frames)
         self.assertEqual([row["banks"] for row in document["banks"]], sorted(expected))
         name = "core" if source == "preloaded" else "steady"
@@ -154,13 +159,15 @@ class Allocate(ProgramTest):
         for row in document["banks"]:
             rates = expected[row["banks"]]
             self.assertEqual(row["frames_per_second"][name], max(rate for _, rate, _ in rates))
-            self.assertEqual(row["tied"], len(tied(rates)), row["banks"])
+            # The bound of a board may show that it is slower, where its rate and uncertainty do not.
+            count = len(tied(rates))
+            self.assertTrue(row["tied"] == count if source == "preloaded" else 1 <= row["tied"] <= count)
             self.assertGreaterEqual(row["bound_frames_per_second"],
                                     max(least for least, _, _ in rates) * (1 - 1e-9))
         best = document["best"]
         highest = best["highest_frames_per_second"][name]
         self.assertEqual(highest, max(rate for _, rate, _ in all_rates))
-        self.assertEqual(best["tied"], len(tied(all_rates)))
+        self.assertLessEqual(best["tied"], len(tied(all_rates)))
         to_reach = max(least for least, _, _ in all_rates) * (1 - 1e-9)
         self.assertEqual(best["banks"], min(banks for banks, rates in expected.items()
                                             if any(most >= to_reach for _, _, most in rates)))
@@ -169,7 +176,7 @@ class Allocate(ProgramTest):
         self.assertLessEqual(best["possible_frames_per_second"], max(most for _, _, most in all_rates))
         self.assertGreaterEqual(best["possible_frames_per_second"], highest)
         self.assertIn("are the same, pixel by pixel, in ", said)
-        return said, self.rows(said), document
+        return said, document
 
     @program.slow
     def test_rates_that_round_to_the_same_are_told_apart(self):
@@ -180,18 +187,16 @@ class Allocate(ProgramTest):
                                r"the best with fewer gives 18\.5958\.")
 
     def test_finds_the_best_of_all_for_the_core_with_turnaround(self):
-        said, _, _ = self.compare(BURST, "preloaded", 3, "--frames", 3)
-        self.assertIn("each allocation is a run of 3 frames, because", said)
+        self.compare(BURST, "preloaded", 3, "--frames", 3)
 
     @program.slow
     def test_finds_the_best_of_all_for_the_computer(self):
-        said, rows, document = self.compare(BOARD, "camera", 13, "--frames", 13)
+        said, document = self.compare(BOARD, "camera", 13, "--frames", 13)
         rule = ("frames/s: steady, over 12 frames, ± what these leave open (a tenth of it with --frames "
                 "121);\n"
                 "an allocation that loses a pixel does not count\n")
         self.assertIn(rule, said)
-        total = lambda name: sum(int(row[name]) for row in rows.values())
-        self.assertLess(total("simulated"), total("allocations"))
+        self.assertLess(document["simulated"], document["allocations"])
         self.assertGreater(document["best"]["tied"], 1)
         highest = document["best"]["highest_frames_per_second"]["steady"]
         kept = min((row for row in document["banks"] if row["frames_per_second"]["steady"] >= highest * 0.7),
@@ -220,7 +225,6 @@ class Allocate(ProgramTest):
                               [name, "--source", source, "--timing-only", "--frames", document["frames"]]):
                 rates = self.rates_of(*run_words)
                 self.assertEqual({key: rates[key] for key in best}, best)
-            self.store.unlink()
             name.unlink()
 
     @program.slow
@@ -234,25 +238,21 @@ class Allocate(ProgramTest):
         self.assertEqual(self.rates_of(*words)["core"], document["best"]["frames_per_second"]["core"])
 
     def test_an_interrupt_gives_the_best_so_far_and_what_is_possible(self):
-        count = "SELECT count(*) FROM points WHERE status = 'ok'"
         written = self.folder / "best.yaml"
         command = ["allocate", *LONG, "--banks", 3, "--out", self.store, "--write", written]
 
         def known():
             with contextlib.suppress(sqlite3.OperationalError):
-                return self.query(self.store, count)[0][0] if self.store.exists() else 0
-            return 0
+                return self.query(self.store, "SELECT value FROM results") if self.store.exists() else []
+            return []
 
         process = self.start(*command)
-        wait_until(lambda: known() >= 10)
+        wait_until(lambda: len(known()) >= 10)
         process.send_signal(signal.SIGINT)
         out, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
         self.assertTrue(errors.endswith("stereotlm: note: interrupted: run the same command to resume\n"))
-        rates = self.query(self.store,
-                           """SELECT "frames_per_second.steady", "frames_per_second.steady_uncertainty"
-            FROM points WHERE status = 'ok'
-            AND "cameras.left.dropped_pixels" + "cameras.right.dropped_pixels" = 0""")
+        rates = [tuple(map(float, value.split()[:2])) for value, in known() if value.split()[2] == "0"]
         found = self.rates_of(written, "--timing-only", "--frames", 122)
         best = {name: found[name] for name in ("steady", "steady_uncertainty")}
         self.assertIn(tuple(best.values()), rates)
@@ -271,29 +271,34 @@ class Allocate(ProgramTest):
             with self.unchanged(self.folder):
                 said = self.succeeds(run(*command, *options, **here))
             self.assertEqual(said, self.succeeds(run(*command, *options, "--out", self.store)))
+            self.store.unlink()
         for number in (signal.SIGINT, signal.SIGTERM):
             process = self.start("allocate", *LONG, "--banks", 3, **here)
-            wait_until(lambda: list(temporary.glob("stereotlm_*/boards.db")))
+            wait_until(lambda: children_of(process))
             process.send_signal(number)
             out, errors = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 130)
             self.assertIn("note: interrupted: nothing is kept: give --out DB to resume later\n", errors)
             self.assertIn("Interrupted", out)
             self.is_in(temporary)
-        nowhere = {"env": {**os.environ, "TMPDIR": str(temporary / "none")}}
-        self.refused_in_one_line(run(*command, **nowhere), f"TMPDIR = {temporary / 'none'}: must be a folder")
 
     def test_an_interrupted_search_is_resumed_to_the_same_result(self):
-        whole = self.succeeds(self.allocate(banks=3))
-        for part in ("substr(hash, 1, 1) < '8'", "substr(hash, 1, 1) > '2'"):
-            self.query(self.store, f"DELETE FROM blame WHERE {part}", f"DELETE FROM points WHERE {part}")
-            self.assertEqual(self.succeeds(self.allocate(banks=3)), whole)
+        command = ["allocate", *LONG, "--banks", 2, "--json"]
+        whole = json.loads(self.succeeds(run(*command)))
+        process = self.start(*command, "--out", self.store)
+        wait_until(lambda: len(children_of(process).split()) >= 2)  # the second one simulates
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(json.loads(process.communicate(timeout=60)[0])["state"], "interrupted")
+        for _ in range(2):  # the second time the answer is read
+            found = json.loads(self.succeeds(run(*command, "--out", self.store)))
+            del found["simulated"]
+            self.assertEqual(found, {key: value for key, value in whole.items() if key != "simulated"})
 
     def test_another_file_is_not_replaced_by_the_best(self):
         board = self.board()
         rule = ("exists, and is not known as a file of this board with another allocation, which alone is "
                 "replaced")
-        process = self.allocate(*PRELOADED, "--write", board, board=board)
+        process = self.allocate(*PRELOADED, "--out", self.store, "--write", board, board=board)
         self.refused_in_one_line(process, f"--write '{board}': is the file of BOARD: must be another")
         self.assertFalse(self.store.exists())
         database = self.folder / "found.yaml"
@@ -318,9 +323,8 @@ class Allocate(ProgramTest):
         shallow = self.file("shallow.yaml", BOARD.replace("ssram: {", default))
         said = self.succeeds(self.allocate(*PRELOADED, board=shallow))
         self.assertEqual(min(self.rows(said)), 3)
-        self.store.unlink()
-        process = self.allocate(*PRELOADED, board=shallow, banks=2)
-        self.refused_in_one_line(process, "--banks = 2: none of", "fits into so few banks; with 3 some do")
+        process = self.allocate(*PRELOADED, "--out", self.store, board=shallow, banks=2)
+        self.refused_in_one_line(process, "--banks = 2: no allocation fits into so few banks; with 3 some do")
         self.assertFalse(self.store.exists())
 
     def test_all_of_the_best_rate_is_kept_by_the_best(self):
@@ -335,9 +339,8 @@ class Allocate(ProgramTest):
     def test_what_loses_pixels_does_not_count(self):
         said = self.succeeds(self.allocate(board=self.board(LOSING), banks=2))
         for line in (
-            r" 1 +\d+ +\d+ +all lose pixels\n",
+            r" 1 +\d+ +all lose pixels\n",
             r"It needs 2 banks \(.*\), the fewest with an allocation that counts\.",
-            r"\d+ of those simulated to the end lose pixels, and do not count\.",
         ):
             self.assertRegex(said, line)
         self.assertNotIn("The disparities of these", said)  # only one allocation
@@ -349,26 +352,6 @@ class Allocate(ProgramTest):
         self.assertFalse(written.exists())
         document = self.found(self.allocate("--json", board=self.board(LOSING), banks=1))
         self.assertEqual(document.keys() & {"best", "keeping", "equal_disparities", "written"}, set())
-
-    @program.slow
-    def test_what_could_not_be_simulated_does_not_count(self):
-        in_a = " AND ".join(f'"allocation.{name}" LIKE \'%a%\'' for name in BUFFERS)
-        for source in ("preloaded", "camera"):
-            before = self.rows(self.succeeds(self.allocate("--source", source, banks=2)))[1]
-            self.query(self.store,
-                       f"DELETE FROM blame WHERE hash IN (SELECT hash FROM points WHERE {in_a})",
-                       f"UPDATE points SET status = 'failed', reason = 'out of luck' WHERE {in_a}")
-            said = self.succeeds(self.allocate("--source", source, banks=2))
-            self.assertRegex(said, r" 1 +2 +2 +")
-            where = ", ".join(f"{name} bank a" for name in BUFFERS)
-            first = f"1 could not be simulated, and do not count. The first:\n  {where}: out of luck"
-            self.assertIn(f"{first}\nTo try again:\n", said)
-            again = re.search(r'sqlite3 (\S+) "(.*)"', said)
-            self.query(again[1], again[2])
-            said = self.succeeds(self.allocate("--source", source, banks=2))
-            self.assertEqual(self.rows(said)[1][0], before[0])
-            self.store.unlink()
-
 
     def test_stripes_are_refused(self):
         self.refused(run("allocate", "eight-banks-four-lanes", "--banks", "8", "--out", self.folder / "a.db"),
@@ -399,7 +382,7 @@ class Allocate(ProgramTest):
         self.succeeds(self.allocate(*PRELOADED, *sets("ssram.banks.NEW={}"), banks=6))
         self.refused_in_one_line(self.allocate("--keep-fps", "101"), "--keep-fps = 101")
         self.store.write_bytes(b"not a database" * 100)
-        self.refused_in_one_line(self.allocate(), f"--out {self.store}")
+        self.refused_in_one_line(self.allocate("--out", self.store), f"--out {self.store}")
 
 
 if __name__ == "__main__":

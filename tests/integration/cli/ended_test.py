@@ -104,10 +104,11 @@ class Commands(EndedTest):
     def test_searches_leave_their_database_with_which_they_continue(self):
         plan = self.file("plan.yaml", "board: fpl2003\nrun: {source: camera, frames: 100000}\n"
                                       "vary: {matcher.window: [3, 5, 7, 9, 11, 13]}\n")
-        database = ["x.db", "x.db-shm", "x.db-wal"]
-        for words in (["allocate", "fpl2003", *FRAMES, "--banks", 8], ["sweep", plan]):
+        whole = ["x.db", "x.db-shm", "x.db-wal"]
+        for words, database, others in ((["allocate", "fpl2003", *FRAMES, "--banks", 8], whole[:1], 2),
+                                        (["sweep", plan], whole, 1)):
             for number in (signal.SIGKILL, signal.SIGHUP, signal.SIGTERM):
-                process = self.begin([PROGRAM, *words, "--out", "x.db"], 1)
+                process = self.begin([PROGRAM, *words, "--out", "x.db"], others)
                 wait_until(lambda: all((self.work / name).exists() for name in database))
                 process.send_signal(number)
                 if number == signal.SIGTERM:  # it puts the database into its final form

@@ -173,14 +173,9 @@ class Lines(FigureTest):
         self.assertEqual(self.draw("pareto", store, pareto=axes), "9 points, 3 of them on the front")
 
     def test_of_banks_goes_through_the_best_allocation(self):
-        store = self.folder / "found.db"
-        self.succeeds(run("allocate", "fpl2003", *SMALL, *PRELOADED, "--banks", 3, "--out", store))
-        self.draw("banks", store)
-        count = len(self.table)
-        self.shows(f"one frame of fpl2003, source preloaded: {count} of {count} points of found.db.",
-                   "best allocation")
         store = self.sweep(ALLOCATIONS)
         self.draw("banks", store)
+        self.shows("best allocation")
         self.is_from(store, self.table, "banks_used")
         rows, _ = self.database(store)
         for row in self.table:

@@ -19,16 +19,6 @@ TEST(ProgressText, CountsAFrameInProgressByItsCycles) {
             "2.00/2 frames   100.0 %   2.00 M cycles/s   2.00 frames/s   0:00 left");
 }
 
-TEST(ProgressText, OfASearchHasATimeOnceFirstResultsHaveLeftOutBoards) {
-  EXPECT_EQ(progress_text(explore::SearchProgress{40, 40, 2460, false}, 10),
-            "40 boards simulated, 2460 left at most");
-  EXPECT_EQ(progress_text(explore::SearchProgress{47, 7, 120, true}, 2),
-            "47 boards simulated, 120 left at most");
-  // Boards that the database had before do not count for the rate.
-  EXPECT_EQ(progress_text(explore::SearchProgress{48, 8, 120, true}, 2),
-            "48 boards simulated, 120 left at most (0:30 at this rate)");
-}
-
 TEST(ProgressText, WritesLongTimes) {
   const auto left = [](std::uint64_t frames) {
     const std::string text = progress_text({frames, 1, 1'000'000, 1'000'000, 1}, 1);

@@ -85,7 +85,7 @@ class RandomSpace {
                                                        {"cycles", false},
                                                        {"energy.memory_mj_per_frame", false},
                                                        {"matcher.window * matcher.disparities", true},
-                                                       {"used_banks", false},
+                                                       {"banks_used", false},
                                                        {"pins", false},
                                                        {kStalls, false}};
     std::shuffle(goals.begin(), goals.end(), random_);
@@ -98,8 +98,8 @@ class RandomSpace {
       if (!list.empty()) plan += fmt::format("{}: [{}]\n", is_maximum ? "maximise" : "minimise", list);
     }
     const std::vector<std::string> requirements = {
-        "used_banks <= 1", "frames_per_second.core >= 15000", "area.slices < 2500",
-        "frames_per_second.core * used_banks > 30000", kStalls + std::string(" <= 100")};
+        "banks_used <= 1", "frames_per_second.core >= 15000", "area.slices < 2500",
+        "frames_per_second.core * banks_used > 30000", kStalls + std::string(" <= 100")};
     if (below(2) == 0) plan += fmt::format("require: [\"{}\"]\n", requirements[below(requirements.size())]);
   }
 
@@ -215,7 +215,7 @@ double value_of(const std::string& text, const BoardConfig& board, const explore
                ? std::get<double>(found->value)
                : static_cast<double>(std::get<std::int64_t>(found->value));
   };
-  if (text == "used_banks") return static_cast<double>(std::count(used.begin(), used.end(), true));
+  if (text == "banks_used") return static_cast<double>(std::count(used.begin(), used.end(), true));
   if (text == "pins") return platform::pins_of(board);
   if (text == "matcher.window * matcher.disparities") return board.matcher.window * board.matcher.disparities;
   return of_figure(text);
@@ -223,12 +223,12 @@ double value_of(const std::string& text, const BoardConfig& board, const explore
 
 bool meets(const explore::Plan& plan, const BoardConfig& board, const explore::Figures& figures) {
   const double rate = value_of("frames_per_second.core", board, figures);
-  const double banks = value_of("used_banks", board, figures);
+  const double banks = value_of("banks_used", board, figures);
   for (const explore::Condition& one : plan.wishes().requirements) {
-    const bool holds = one.text == "used_banks <= 1"                   ? banks <= 1
+    const bool holds = one.text == "banks_used <= 1"                   ? banks <= 1
                        : one.text == "frames_per_second.core >= 15000" ? rate >= 15000
                        : one.text == "area.slices < 2500" ? value_of("area.slices", board, figures) < 2500
-                       : one.text == "frames_per_second.core * used_banks > 30000"
+                       : one.text == "frames_per_second.core * banks_used > 30000"
                            ? rate * banks > 30000
                            : value_of(kStalls, board, figures) <= 100;
     if (!holds) return false;
