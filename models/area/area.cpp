@@ -1,7 +1,6 @@
 #include "models/area/area.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "models/area/filter_arithmetic.h"
 #include "models/fpga/frame_geometry.h"
@@ -19,6 +18,16 @@ constexpr int kOffsetBits = 12;             // contract 7.3: X and Y are -2048..
 constexpr int kDisparityBits = 8;           // contract 1.5, 255 = invalid
 constexpr int kWordBits = 32;
 constexpr int kValidBit = 1;
+constexpr int kAddressBits = 26;  // of a word in a bank
+
+// What controls the parts, as Yosys makes it of these blocks of models/rtl for images of 640x480
+// (results/silicon). Other sizes have other counters; they differ by a few LUTs.
+constexpr Resources kSequencer{103, 105};       // of a lane: sequencer, and the rest of lane
+constexpr Resources kMatcherControl{132, 119};  // match_control, window_control, matcher
+constexpr Resources kSlotPosition{153, 64};     // slot_position
+constexpr Resources kResultControl{92, 64};     // result_port
+constexpr Resources kFrameRegisters{51, 225};   // stereo_core
+constexpr Resources kMultiplexer{150, 13};      // a port's share of paper_crossbar
 
 // Resources of the cost functions (contract 7.6).
 
@@ -110,7 +119,9 @@ struct Core {
         folds(fpga::folds_of(config)),
         units(fpga::units_of(config)),
         pair(pair_arithmetic(config.cost)),
-        disparity_bits(bits_of(config.disparities - 1)) {}
+        disparity_bits(bits_of(config.disparities - 1)) {
+    pair.resources += registers(bits_of(pair.most));  // of the pipeline
+  }
 
   int valid_bit_of(bool left) const { return left && config.left_table ? kValidBit : 0; }
   int tables() const { return int{config.left_table} + int{config.right_table}; }
@@ -144,7 +155,8 @@ Resources word_cache(const Core& core, int lane) {
 
 // Contract section 2, "Lane", and paper section 3.2. A slot waits in queues of `lane_fifo_slots` places,
 // first as a table entry, then as a pixel. Only the left valid bit is passed on, to the left-right check. The
-// source pixel of an entry has the address row * W + column, and is one of four in its word. Joint tables
+// source pixel of an entry has the address row * W + column, and is one of four in its word. It is added to
+// the first address of its buffer, as the place of the slot is to that of the table. Joint tables
 // (contract 7.3): one port reads both halves of an entry, and each lane has its queue. The halves are
 // displacements. The counters of a lane's position begin at the offsets X and Y, so that a displacement takes
 // one adder for the column and one for the row. Each side has P lanes (contract 8.1).
@@ -153,54 +165,45 @@ void add_lanes(const Core& core, Items& items) {
   const int lanes = 2 * config.lanes;
   const int tables = core.tables() * config.lanes;
   const int entry_bits = config.joint_tables ? kJointEntryBits : kEntryBits;
-  add("table entry queues", tables, tables * shift_register(config.lane_fifo_slots, entry_bits), items);
+  add("slot sequencers", lanes, lanes * (kSequencer + adder(kAddressBits)), items);
+  add("table entry queues", tables, tables * queue(config.lane_fifo_slots, entry_bits), items);
   if (config.joint_tables) {
     const Resources position =
         adder(bits_of(config.width - 1)) + adder(bits_of(config.height - 1)) + registers(2 * kOffsetBits);
     add("source positions", tables, tables * position, items);
   }
   const int address_bits = bits_of(std::int64_t{config.width} * config.height - 1);
-  add("source addresses", tables, tables * digits(config.width, address_bits), items);
+  add("source addresses", tables, tables * (digits(config.width, address_bits) + adder(kAddressBits)), items);
   Resources caches;
   for (int lane = 0; lane < config.lanes; ++lane) caches += 2 * word_cache(core, lane);
   if (config.pixel_cache == fpga::PixelCache::kWord) add("word caches", lanes, caches, items);
   add("byte selectors", lanes, lanes * multiplexer(4, kPixelBits), items);
   Resources queues;
   for (const bool left : {true, false})
-    queues += config.lanes * shift_register(config.lane_fifo_slots, kPixelBits + core.valid_bit_of(left));
+    queues += config.lanes * queue(config.lane_fifo_slots, kPixelBits + core.valid_bit_of(left));
   add("pixel queues", lanes, queues, items);
 }
 
-// The `bits` before each new pixel in its row, of both sides. A lane has a memory with a place for each slot
-// that it has of a column, or behind a line buffer registers.
-Resources columns_before(const Core& core, int bits) {
-  if (core.columns_of_pixels) return 2 * registers(bits);
-  Resources all;
-  for (int lane = 0; lane < core.config.lanes; ++lane)
-    all += 2 * memory(core.geometry.slots_of_lane(lane), bits);
-  return all;
-}
-
-// Paper section 2.4, contract 1.2. m is the size of the kernel. Beside the new pixel the filter reads the
-// m - 1 pixels before it in the same row, from memories (registers behind a line buffer). The line memories
-// hold the partial sums of the rows above for each image column. Without a line buffer they also hold
-// max(0, h - r) left valid bits: from the middle row of the first window to the row above the newest K. Each
-// of P lanes has a filter, which passes its partial sums on to the next slot of the column.
+// Paper section 2.4, contract 1.2. m is the size of the kernel. The m - 1 columns before the new pixel are in
+// shift registers with a place for each slot that the lane has of a column (one behind a line buffer). The
+// line memories hold the partial results of each image column, and a pixel that repeats below the image. Each
+// of P lanes has a filter, which passes its partial results on to the next slot of the column.
 void add_filter(const Core& core, Items& items) {
   const CoreConfig& config = core.config;
   if (!config.filter) return;
   const FilterArithmetic arithmetic = filter_arithmetic(*config.filter);
   const int filters = 2 * config.lanes;
   add("filters", filters, filters * arithmetic.resources, items);
-  const int before_bits = (config.filter->size - 1) * kPixelBits;
-  add("filter columns", filters, columns_before(core, before_bits), items);
-  const int rows_above = std::max(0, core.geometry.half - core.geometry.radius);
-  Resources lines;
-  for (const bool left : {true, false}) {
-    const int valid_bits = core.columns_of_pixels ? 0 : core.valid_bit_of(left) * rows_above;
-    lines += memory(config.width, arithmetic.chain_bits + valid_bits);
+  Resources columns;
+  for (int lane = 0; lane < config.lanes; ++lane) {
+    const int places = core.columns_of_pixels ? 1 : core.geometry.slots_of_lane(lane);
+    for (const bool left : {true, false})
+      columns += shift_register(places, (config.filter->size - 1) * (kPixelBits + core.valid_bit_of(left)));
   }
-  add("filter line memories", 2, lines, items);
+  add("filter columns", filters, columns, items);
+  const Resources lines =
+      memory(config.width, arithmetic.chain_bits) + memory(config.width, kPixelBits + kValidBit);
+  add("filter line memories", 2, 2 * lines, items);
 }
 
 // Contract 7.6. c is the size of the neighbourhood. The stage behind the filter makes c * c - 1 bits of each
@@ -213,7 +216,10 @@ void add_census(const Core& core, Items& items) {
   const int before_bits = 2 * config.cost.half() * kPixelBits;
   const int lanes = 2 * config.lanes;
   add("census bits", lanes, lanes * census_bits(config.cost, !core.columns_of_pixels), items);
-  if (!core.columns_of_pixels) add("census columns", lanes, columns_before(core, before_bits), items);
+  Resources columns;
+  for (int lane = 0; lane < config.lanes; ++lane)
+    columns += 2 * memory(core.geometry.slots_of_lane(lane), before_bits);
+  if (!core.columns_of_pixels) add("census columns", lanes, columns, items);
   add("census line memories", 2, 2 * memory(config.width, before_bits), items);
 }
 
@@ -233,29 +239,30 @@ void add_row_buffers(const Core& core, Items& items) {
 // column to column is a shift register with a place for each fold (S = 1: registers).
 
 // Sums the results of n pixel pairs of a column: one pair per cycle, or all in one cycle behind a line
-// buffer. With one row of results the sum begins anew with each column. With several rows (contract 7.2) it
-// slides down the column: it adds the result of the new pair, and subtracts that of n slots before. Its last
-// R values belong to the R rows. With P lanes (contract 8.1) P pairs come in a cycle: a tree of adders sums
-// their results. With several rows the sum slides P times in a cycle, because each of its values may belong
-// to a row.
+// buffer. A register of the pipeline follows. With one row of results the sum begins anew with each column.
+// With several rows (contract 7.2) it slides down the column: it adds the result of the new pair, and
+// subtracts that of n slots before. Its last R values belong to the R rows. With P lanes (contract 8.1) P
+// pairs come in a cycle: a tree of adders sums their results. With several rows the sum slides P times in a
+// cycle, because each of its values may belong to a row.
 Resources column_sum(const Core& core, const Resources& pair, std::int64_t most, int folds) {
   const int n = core.config.window;
   const int bits = core.column_sum_bits(most);
-  if (core.columns_of_pixels) return n * pair + adder_tree(n, most) + registers(bits);
+  if (core.columns_of_pixels) return n * pair + adder_tree(n, most) + 2 * registers(bits);
   const int lanes = core.config.lanes;
-  Resources column = lanes * pair + shift_register(folds, bits);
+  Resources column = lanes * pair + shift_register(folds, bits) + registers(bits);
   if (core.config.rows == 1) return column + adder_tree(lanes, most) + adder(bits);
   const Resources kept = shift_register((n + lanes - 1) / lanes * folds, bits_of(most));
   return column + lanes * (kept + adder(bits_of(most) + 1) + adder(bits));
 }
 
-// Sums the last n column sums: adds the new column sum, and subtracts the column sum of n columns before.
+// Sums the last n column sums: adds the new column sum, and subtracts that of n columns before, once there is
+// one. A register of the pipeline follows.
 Resources window_sum(const Core& core, std::int64_t most, int folds) {
   const int column_bits = core.column_sum_bits(most);
   const int bits = core.window_sum_bits(most);
-  const Resources new_less_old = adder(column_bits + 1);  // signed
-  return shift_register(core.config.window * folds, column_bits) + new_less_old + adder(bits) +
-         shift_register(folds, bits);
+  const Resources gate{column_bits - 1};
+  return shift_register(core.config.window * folds, column_bits) + gate + 2 * adder(bits) +
+         shift_register(folds, bits) + registers(bits);
 }
 
 // U - 1 delays, which take a number of the right side from module to module, by `places` clock enables each.
@@ -287,7 +294,7 @@ void add_modules(const Core& core, Items& items) {
   add("column modules", units, units * column_sum(core, pair.resources, pair.most, core.folds), items);
   const std::int64_t windows = units * core.config.rows;
   add("window modules", windows, windows * window_sum(core, pair.most, core.folds), items);
-  add("candidate marks", units, units * shift_register(core.folds, 1), items);
+  add("candidate marks", units, units * (shift_register(core.folds, 1) + selector(2)), items);
 }
 
 // Contract 7.6, zncc. Each side has the sums of its pixels and of their squares, and the variance, for each
@@ -380,21 +387,18 @@ void add_select_min_tree(const Core& core, Items& items) {
   add("select-min unit B", rows * comparators, rows * tree, items);
 }
 
-// Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. A block RAM holds the
-// last D right-based disparities, and is read at the place to which the left-based disparity points. The
-// comparison takes an absolute difference, LUTs that compare it with the tolerance (4 bits in the first LUT,
-// 3 more in each further one), and a LUT that joins the result with both valid bits. The valid bit of the
-// left pixel itself waits until its column is the middle of the window. A selector gives the disparity or
-// 255. Without a check only the delays and this selector remain. Each row of results has all these parts.
+// Contract 1.4. The left-based disparity waits D-1 columns for the right-based one. Memories of LUTs hold the
+// last D of each, read at the places of D-1 columns before and of the disparity. The comparison takes an
+// absolute difference. The valid bit of the left pixel itself waits until its column is the middle of the
+// window. A selector gives the disparity or 255. Without a check only the delays and this selector remain.
+// Each row of results has all these parts.
 void add_left_right_check(const Core& core, Items& items) {
-  const int bits = core.disparity_bits;
-  Resources check = shift_register(core.config.disparities - 1, bits + kValidBit);
+  const int place_bits = std::max(1, core.disparity_bits);
+  const Resources delay = lut_memory(1 << place_bits, kDisparityBits) + adder(place_bits);
+  Resources check = delay + selector(kDisparityBits);
   if (core.config.left_table) check += shift_register(core.geometry.radius + core.geometry.half, kValidBit);
-  if (core.config.lr_tolerance) {
-    check += memory(core.config.disparities, bits + kValidBit) + absolute_difference(bits) +
-             Resources{std::max(1, (bits + 1) / 3)} + Resources{1};
-  }
-  check += selector(kDisparityBits);  // the disparity or 255
+  if (core.config.lr_tolerance)
+    check += delay + absolute_difference(kDisparityBits) + selector(kDisparityBits);
   add("left-right check", core.config.rows, core.config.rows * check, items);
 }
 
@@ -409,7 +413,22 @@ void add_results(const Core& core, Items& items) {
   const Resources packers = rows == 1 ? registers(kWordBits - kDisparityBits)
                                       : rows * registers(kWordBits) + multiplexer(rows, kWordBits);
   add("result packer", rows, packers, items);
-  add("result queue", 1, shift_register(core.config.result_fifo_words, kWordBits), items);
+  const int words = core.config.result_fifo_words;
+  add("result queue", 1, kResultControl + (words == 1 ? registers(kWordBits) : memory(words, kWordBits)),
+      items);
+}
+
+// Control, the registers of the frame, and the multiplexers and arbiters of the banks: a port for each table
+// (joint tables: for both), for each lane, for the results and for the host. Each port reaches one or two
+// banks, the host all.
+void add_control(const Core& core, Items& items) {
+  const CoreConfig& config = core.config;
+  add("matcher control", 1, kMatcherControl, items);
+  if (config.filter) add("slot positions", 1, kSlotPosition, items);
+  add("frame registers", 1, kFrameRegisters, items);
+  const int tables = config.joint_tables ? core.tables() / 2 : core.tables();
+  const int ports = (tables + 2) * config.lanes + 2;
+  add("bank multiplexers", ports, ports * kMultiplexer, items);
 }
 
 double percent(std::int64_t part, std::int64_t whole) {
@@ -433,6 +452,7 @@ std::vector<Item> items(const CoreConfig& config) {
   add_select_min_tree(core, found);
   add_left_right_check(core, found);
   add_results(core, found);
+  add_control(core, found);
   return found;
 }
 
@@ -443,12 +463,9 @@ bool Area::fits() const {
 Area total(const std::vector<Item>& items, const Device& device) {
   Area area;
   Resources all;
-  for (const Item& item : items) {
-    area.lut_equivalents += item.lut_equivalents();
-    all += item.all;
-  }
-  area.slices = static_cast<std::int64_t>(
-      std::ceil(kSlicesPerLutEquivalent * static_cast<double>(area.lut_equivalents)));
+  for (const Item& item : items) all += item.all;
+  area.lut_equivalents = std::max(all.luts, all.flip_flops);
+  area.slices = ceil_of(area.lut_equivalents, 2);
   area.slices_percent = percent(area.slices, device.slices);
   area.luts = all.luts;
   area.flip_flops = all.flip_flops;

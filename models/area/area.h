@@ -9,9 +9,8 @@
 #include "models/area/parts.h"
 #include "models/fpga/core_config.h"
 
-// Estimates the FPGA resources that the stereo core takes, part by part: of all parts that pixels, table
-// entries, sums and disparities pass through, but not of those that control them. README.md says what is
-// counted, and from which figures of the paper and sections of the contract it follows.
+// Estimates the FPGA resources that the stereo core takes, part by part. README.md says what is counted, and
+// compares it with the synthesis of models/rtl.
 namespace stereotlm::area {
 
 // All parts of one kind, such as the column modules.
@@ -27,14 +26,11 @@ struct Item {
 // the configuration does not need are absent. Throws std::invalid_argument if the configuration has problems.
 std::vector<Item> items(const fpga::CoreConfig& config);
 
-// Slices per LUT-equivalent: a least-squares fit to the three rows of Table 2.
-inline constexpr double kSlicesPerLutEquivalent = 0.6218;
-
 // The resources of all items together. Percentages are shares of the device: the core does not fit if one of
 // them is above 100.
 struct Area {
-  std::int64_t lut_equivalents = 0;                   // places of a LUT and a flip-flop
-  std::int64_t slices = 0;                            // rounded up
+  std::int64_t lut_equivalents = 0;                   // LUTs or flip-flops, whichever are more
+  std::int64_t slices = 0;                            // of two lut_equivalents: full, the lower limit
   double slices_percent = 0;                          // of the device's slices
   std::int64_t luts = 0;                              // as in Resources
   std::int64_t flip_flops = 0;                        // as in Resources

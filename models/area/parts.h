@@ -72,8 +72,8 @@ inline Resources multiplexer(int numbers, int bits) {
 }
 // Tests whether two numbers are equal: each LUT compares two bits of both, the carry chain joins the LUTs.
 inline Resources equality(int bits) { return {ceil_of(bits, 2)}; }
-// |a - b|: the difference with its borrow, and one LUT per bit that negates it.
-inline Resources absolute_difference(int bits) { return comparator(bits) + selector(bits); }
+// |a - b|: a comparison, both differences, and one LUT per bit that selects.
+inline Resources absolute_difference(int bits) { return 4 * Resources{bits}; }
 // Sums `count` numbers of 0..most in one cycle, in a tree of adders.
 inline Resources adder_tree(int count, std::int64_t most) {
   if (count == 1) return {};
@@ -95,11 +95,23 @@ inline Resources digits(int radix, int bits) {
 }
 // Holds a number until the next clock enable: one flip-flop per bit.
 inline Resources registers(int bits) { return {0, bits}; }
-// Delays a number by `length` clock enables, or queues up to `length` numbers. A length of 1 takes one
-// flip-flop per bit. A longer register takes one SRL16 per bit for every 16 places. The multiplexers of the
-// slices (MUXF5 to MUXF8) join the SRL16s of a queue.
+// Delays a number by `length` clock enables. A length of 1 takes one flip-flop per bit. A longer register
+// takes one SRL16 per bit for every 16 places.
 inline Resources shift_register(int length, int bits) {
   return length == 1 ? registers(bits) : Resources{ceil_of(length, 16) * bits};
+}
+// A memory of LUTs with a write port and a read port, which answers in the same cycle: two LUTs per bit for
+// 16, 32 or 64 words; for more words a multiplexer joins memories of 64.
+inline Resources lut_memory(int words, int bits) {
+  int deep = 16;
+  while (deep < words && deep < 64) deep *= 2;
+  const auto groups = static_cast<int>(ceil_of(words, deep));
+  return Resources{2 * deep / 16 * groups * bits} + multiplexer(groups, bits);
+}
+// A queue of pixels or table entries. What arrives may leave in the same cycle.
+inline Resources queue(int slots, int bits) {
+  constexpr Resources kQueueControl{28, 17};  // of 16 slots: block queue
+  return (slots == 1 ? registers(bits) : lut_memory(slots, bits)) + selector(bits) + kQueueControl;
 }
 // A memory with a write port and a read port: block RAMs side by side, each 512 x 36, or deeper and narrower
 // (1K x 18, 2K x 9, 4K x 4, 8K x 2, 16K x 1) so that no multiplexer is needed.

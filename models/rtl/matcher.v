@@ -54,8 +54,8 @@ module matcher #(
       localparam BEHIND_WINDOW = STAGES >= AT_FILTER + 1 ? 1 : 0;
       localparam BEHIND_ROWS = STAGES >= AT_FILTER + 2 ? 1 : 0;
       localparam BEHIND_SUM = STAGES >= AT_ARRAY ? 1 : 0;
-      wire [$clog2(WIDTH)-1:0] column, next_column;
-      wire is_top, is_below, centre_is_top;
+      wire [$clog2(WIDTH)-1:0] column, next_column, centre, next_centre;
+      wire is_below, centre_is_top;
       wire [HALF-1:0] has_before, has_behind;
       wire unused;  // valid bit of the right side
 
@@ -63,23 +63,24 @@ module matcher #(
           .WIDTH(WIDTH), .HEIGHT(HEIGHT), .SLOTS(WINDOW), .FIRST_ROW(FIRST_ROW), .HALF(HALF)
       ) position (
           .clk(clk), .start(start), .enable(in_enable), .last(in_last), .column(column),
-          .next_column(next_column), .is_top(is_top), .is_below(is_below), .centre_is_top(centre_is_top),
-          .has_before(has_before), .has_behind(has_behind));
+          .next_column(next_column), .centre(centre), .next_centre(next_centre), .is_below(is_below),
+          .centre_is_top(centre_is_top), .has_before(has_before), .has_behind(has_behind));
       log_filter #(
           .WIDTH(WIDTH), .SLOTS(WINDOW), .HALF(HALF), .SHIFT(SHIFT), .WEIGHTS(WEIGHTS),
           .WINDOW_STAGES(BEHIND_WINDOW), .ROW_STAGES(BEHIND_ROWS), .SUM_STAGES(BEHIND_SUM)
       ) left_filter (
           .clk(clk), .enable(in_enable), .first(in_first), .last(in_last), .pixel(in_left), .column(column),
-          .next_column(next_column), .is_top(is_top), .is_below(is_below), .centre_is_top(centre_is_top),
-          .has_before(has_before), .has_behind(has_behind), .filtered(left_filtered));
+          .next_column(next_column), .centre(centre), .next_centre(next_centre), .is_below(is_below),
+          .centre_is_top(centre_is_top), .has_before(has_before), .has_behind(has_behind),
+          .filtered(left_filtered));
       log_filter #(
           .WIDTH(WIDTH), .SLOTS(WINDOW), .HALF(HALF), .SHIFT(SHIFT), .WEIGHTS(WEIGHTS),
           .WINDOW_STAGES(BEHIND_WINDOW), .ROW_STAGES(BEHIND_ROWS), .SUM_STAGES(BEHIND_SUM)
       ) right_filter (
           .clk(clk), .enable(in_enable), .first(in_first), .last(in_last), .pixel({1'b0, in_right}),
-          .column(column), .next_column(next_column), .is_top(is_top), .is_below(is_below),
-          .centre_is_top(centre_is_top), .has_before(has_before), .has_behind(has_behind),
-          .filtered({unused, right_filtered}));
+          .column(column), .next_column(next_column), .centre(centre), .next_centre(next_centre),
+          .is_below(is_below), .centre_is_top(centre_is_top), .has_before(has_before),
+          .has_behind(has_behind), .filtered({unused, right_filtered}));
       pipe #(.BITS(4), .STAGES(BEHIND_WINDOW + BEHIND_ROWS + BEHIND_SUM)) filter_flags (
           .clk(clk), .in({in_enable, in_first, in_last, in_completes}),
           .out({slot_enable, slot_first, slot_last, slot_completes}));

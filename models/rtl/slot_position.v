@@ -7,9 +7,9 @@ module slot_position #(
     input clk, input start, input enable,
     input last,  // slot of its column
     output reg [$clog2(WIDTH)-1:0] column, output [$clog2(WIDTH)-1:0] next_column,
-    output is_top,  // the slot is in row 0
-    output is_below,  // it is below the image
-    output centre_is_top,  // as is_top, in the strip of the centre
+    output reg [$clog2(WIDTH)-1:0] centre, output [$clog2(WIDTH)-1:0] next_centre,
+    output is_below,  // the slot is below the image
+    output centre_is_top,  // it is in row 0 of the strip of the centre
     // Bit i-1: column i before the centre, and column i behind it, is in the image.
     output reg [HALF-1:0] has_before, output reg [HALF-1:0] has_behind
 );
@@ -20,7 +20,6 @@ module slot_position #(
   localparam integer FIRST_CENTRE = FIRST_ROW - (HALF + WIDTH - 1) / WIDTH;
   localparam signed [ROW_BITS-1:0] HEIGHT_ROW = HEIGHT[ROW_BITS-1:0];
 
-  reg [COLUMN_BITS-1:0] centre;
   reg signed [ROW_BITS-1:0] strip_row;  // of the first slot of each column
   reg signed [ROW_BITS-1:0] row;
   reg signed [ROW_BITS-1:0] centre_strip_row;
@@ -32,7 +31,7 @@ module slot_position #(
   integer i;
 
   assign next_column = ends_strip ? 0 : column + 1;
-  assign is_top = row == 0;
+  assign next_centre = centre_ends_strip ? 0 : centre + 1;
   assign is_below = row >= HEIGHT_ROW;
   assign centre_is_top = centre_row == 0;
   always @* begin
@@ -52,7 +51,7 @@ module slot_position #(
       centre_row <= FIRST_CENTRE[ROW_BITS-1:0];
     end else if (enable && last) begin
       column <= next_column;
-      centre <= centre_ends_strip ? 0 : centre + 1;
+      centre <= next_centre;
       strip_row <= next_row;
       row <= next_row;
       centre_strip_row <= next_centre_row;

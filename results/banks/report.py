@@ -96,7 +96,7 @@ The whole computer (`computer.json`); behind ± stands what 120 frames leave ope
 - `sync_burst` makes sharing dearer, not eight banks necessary: it loses most with four, where results share
   with a table.
 - Five banks lose what they lose to short queues: bursts of the bus interrupt the lanes, and 16 slots do not
-  bridge them. With queues of 32 slots, for 40 slices more (0.5 %), five banks give {long5:.3f} frames a
+  bridge them. With queues of 32 slots, for 63 slices more (0.7 %), five banks give {long5:.3f} frames a
   second, 99.5 % of the best, and four {long4:.3f}. 24 slots are nearly as good, longer ones than 32 no better
   ([queues.yaml](queues.yaml): five banks, both buffers of each list in one, 61 frames):
 

@@ -107,16 +107,16 @@ In the whole computer with three input buffers (`fpl2003-triple`), 7x7, {frames}
   18.6, 127.5 at 15x15 instead of 8.7. What is gained is n times, less what the rows outside the picture cost.
 - It is paid in slices. Column fetch brings one pixel of each column in a clock, so that one absolute
   difference and one adder do for a column of the window; line buffers bring all n at once, and each of the D
-  modules needs n of them. At 7x7 that is 51 % of the FPGA instead of 22 %. With line buffers 7x7 fits up to
+  modules needs n of them. At 7x7 that is 52 % of the FPGA instead of 25 %. With line buffers 7x7 fits up to
   120 disparities in this sweep, 15x15 up to 80; with column fetch all windows up to 31x31 fit at 240. The
-  paper's 200 disparities at 7x7 would be 126 % with line buffers. Block RAM is not what runs out.
+  paper's 200 disparities at 7x7 would be 124 % with line buffers. Block RAM is not what runs out.
 - With the paper's cameras most of the gain cannot be used: the computer delivers their 29.97 frames a second,
   at 26 % of the PCI bus. Cameras of 120 Hz are followed too, with the bus 93 % busy: that is about what 33
   MHz, 32 bit carry.
 - Column fetch is thus the choice of a designer with many disparities and slow cameras; 9x9 and smaller with
   fewer than 100 disparities could have had the full camera rate on the same FPGA.
 
-**Limits.** The area of line buffers is counted from the structure and compared with nothing printed
+**Limits.** The area of line buffers is counted from the structure and compared with no synthesis
 ([Area](../../models/area/README.md)); a fuller FPGA may not reach its 40 MHz. Tables are the identity: what
 line buffers of *raw* pictures would need with a real rig is another matter (29 lines instead of 7, `stereotlm
 calibrate`); here rows of *rectified* pictures are kept, and the memories are still read pixel by pixel

@@ -273,7 +273,7 @@ other; no board has the word cache:
   {slices200:.0f} % of the slices. With a module for each disparity line buffers need {all200:.0f} %. Column
   fetch gives {column200:.1f} with {column_slices200:.0f} %.
 - **Line buffers with few modules beat column fetch** at every rate and window of the third table: they take a
-  quarter to a half of the area. The paper's rate takes {paper_slices:.1f} % with column fetch, and
+  third to three fifths of the area. The paper's rate takes {paper_slices:.1f} % with column fetch, and
   {fast_slices:.1f} % with line buffers and {fast_units} modules ({fast_rate:.2f} frames a second). Column
   fetch spends n clocks on a result, one for each row of the window; line buffers with folds spend as many,
   one for each pass. The absolute differences are as many too. But there are n times fewer windows, select-min
@@ -284,7 +284,7 @@ other; no board has the word cache:
 - **One bank does what eight did.** With line buffers a pixel and side takes one read of the table and one of
   the picture, instead of seven each. With {fast_units} modules all buffers of the paper's board share one
   bank, and the computer delivers {one_bank:.2f} frames a second, with the tables of the real rig
-  {one_bank_rig:.2f}. The paper's board delivers 17.98, with eight banks and nearly twice the area. With
+  {one_bank_rig:.2f}. The paper's board delivers 17.98, with eight banks and 1.6 times the area. With
   cameras {more_units} modules are no better than {fast_units}, because captures wait for the next camera
   frame. Two banks and 20 modules ({all_slices:.1f} %) deliver all 29.97.
 - The real rig costs nothing here: with several clocks for each slot a lane makes up for a clock that it has
@@ -292,7 +292,7 @@ other; no board has the word cache:
 
 **Limits.** Areas are estimates, and those of folds and of line buffers are compared with no board
 ([area](../../models/area/README.md)); no placement is tried. Line buffers take {block_rams} block RAMs
-instead of 17. One bank for all needs 1,075,200 words, twice what the banks of our `fpl2003` have.
+instead of 15. One bank for all needs 1,075,200 words, twice what the banks of our `fpl2003` have.
 """
 
 

@@ -66,7 +66,7 @@ class Claim:
 PAIR = "the given pair"
 # Window n of n x n: frames a second at 640x480 with 80 disparities; 40 MHz stands in Table 2.
 TABLE_1 = {15: 8.7, 13: 10.0, 11: 11.8, 9: 14.5, 7: 18.9, 5: 26.0}
-# Disparities: percent of the slices at 640x480 with 7x7. The area model is fitted to these sizes.
+# Disparities: percent of the slices at 640x480 with 7x7.
 TABLE_2 = {80: 21, 160: 43, 200: 54}
 TABLE_2_RATE = 18.9  # of all three rows
 

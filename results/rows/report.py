@@ -272,15 +272,15 @@ The whole computer, 7x7, two picture buffers, 61 frames, steady frames a second 
   eight {eight:.2f}, sixteen {sixteen:.2f}. n times one row, the rate of line buffers, stays out of reach,
   because n-1 rows are read again for each strip.
 - At 7x7 each row takes {each:.1f} % of the FPGA more, and {fits} rows fit. The rate grows by less and less,
-  so one row has the most frames for an area, and there is no knee. With larger windows rows share more: the
-  best of all is two at 11x11 and 15x15, three at 21x21 and four at 31x31.
+  so two or three rows have the most frames for an area. With larger windows rows share more: the best of all
+  is three at 9x9 and 11x11, four at 15x15 and 21x21 and five at 31x31.
 - The matcher limits every board with a bank for each buffer: it consumes one slot a clock. Rows that do not
   divide the 480 rows of the image waste a part of the last strip (14 rows give hardly more than 13).
 - The queue needs a place for each row before the matcher takes a slot, and R words come at once. A queue of R
   words makes the matcher wait until it is empty. So these boards have one of 32.
 - **Line buffers take over early**: at 7x7 from three rows on they are smaller, and {faster:.1f} times as
   fast. The larger the window, the later, because they need n absolute differences in each module, while rows
-  need R windows, select-min units and checks whatever the window. At 15x15 four rows are smaller. At 21x21
+  need R windows, select-min units and checks whatever the window. At 15x15 five rows are smaller. At 21x21
   and 31x31 line buffers do not fit, and four rows do. With fewer modules line buffers fit again, and are the
   better choice everywhere ([results/folds](../folds/README.md)).
 - In two banks with the identity four rows keep all of their rate and eight {two_eight:.0f} % of it: more

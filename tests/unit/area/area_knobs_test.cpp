@@ -32,13 +32,13 @@ TEST(FoldedArea, IsTheWholeAreaIfThereIsAModuleForEachDisparity) { expect_same(c
 
 // Windows of 7x7: sums of columns have 11 bits, sums of windows 14.
 TEST(FoldedArea, KeepsAPlaceForEachPassInShiftRegisters) {
-  expect_all("column modules", {{core(kUnits, 40), {40 * (17 + 11 + 11)}},
-                                {core(kUnits, 27), {27 * (17 + 11 + 11)}},
-                                {core(kUnits, 5), {5 * (17 + 11 + 11)}},  // 16 passes
-                                {core(kUnits, 4), {4 * (17 + 11 + 2 * 11)}}});
-  expect_all("window modules", {{core(kUnits, 40), {40 * (11 + 12 + 14 + 14)}},  // 14 places
-                                {core(kUnits, 27), {27 * (2 * 11 + 12 + 14 + 14)}}});
-  expect_all("candidate marks", {{core(kUnits, 40), {40}}, {core(kUnits, 4), {2 * 4}}});
+  expect_all("column modules", {{core(kUnits, 40), 40 * Resources{32 + 11 + 11, 8 + 11}},
+                                {core(kUnits, 27), 27 * Resources{32 + 11 + 11, 8 + 11}},
+                                {core(kUnits, 5), 5 * Resources{32 + 11 + 11, 8 + 11}},  // 16 passes
+                                {core(kUnits, 4), 4 * Resources{32 + 11 + 2 * 11, 8 + 11}}});
+  expect_all("window modules", {{core(kUnits, 40), 40 * Resources{11 + 10 + 3 * 14, 14}},  // 14 places
+                                {core(kUnits, 27), 27 * Resources{2 * 11 + 10 + 3 * 14, 14}}});
+  expect_all("candidate marks", {{core(kUnits, 40), {3 * 40}}, {core(kUnits, 4), {4 * 4}}});
   const CoreConfig line_buffer = core(kFetch, Fetch::kLineBuffer, kUnits, 40);
   const Resources all = all_of(core(kFetch, Fetch::kLineBuffer), "column modules");
   expect_all("column modules", {{line_buffer, {all.luts / 2, all.flip_flops / 2}}});
@@ -76,8 +76,9 @@ TEST(RowsArea, SharesPixelsFiltersAndColumnModules) {
   expect_all("right pixel delays",
              {{core(kRows, 10, kResultWords, 10), {79 * 8}}, {core(kRows, 11, kResultWords, 11), {79 * 16}}});
   // A column sum that slides over 7 pixel differences: they are kept, and the old one is subtracted.
-  expect_all("column modules", {{core(kRows, 4), 80 * Resources{17 + 11 + 8 + 9, 11}},
-                                {core(kRows, 4, kUnits, 27), {27 * (17 + 11 + 11 + 2 * 8 + 9)}}});
+  expect_all("column modules",
+             {{core(kRows, 4), 80 * Resources{32 + 11 + 8 + 9, 8 + 2 * 11}},
+              {core(kRows, 4, kUnits, 27), 27 * Resources{32 + 11 + 11 + 2 * 8 + 9, 8 + 11}}});
 }
 
 TEST(RowsArea, HasWindowsSelectUnitsAndChecksForEachRow) {
@@ -103,20 +104,9 @@ TEST(ResultDelayArea, DelaysTheDisparityOfEachRow) {
   expect_all("result queue", {{core(kResultDelay, 64), all_of(core(), "result queue")}});
 }
 
-// The middle of the first window is 12 rows above the newest row, for any number of rows.
-TEST(RowsArea, KeepsTheValidBitsOfAsManyRowsAbove) {
-  kernels::FilterKernel kernel{31, std::vector<int>(961, 0), 0};
-  kernel.weights[0] = 1;
-  kernel.weights[929] = -1;
-  const CoreConfig one_row = core(kWidth, 512, kFilter, kernel);
-  CoreConfig four_rows = one_row;
-  four_rows.rows = 4;
-  expect_all("filter line memories", {{one_row, block_rams(8 + 7)}, {four_rows, block_rams(8 + 7)}});
-}
-
 TEST(LanesArea, HasQueuesAndFiltersForEachLane) {
-  for (const char* const name : {"table entry queues", "source addresses", "byte selectors", "pixel queues",
-                                 "filters", "filter columns"}) {
+  for (const char* const name : {"slot sequencers", "table entry queues", "source addresses",
+                                 "byte selectors", "pixel queues", "filters"}) {
     expect_all(name, {{core(kLanes, 4), 4 * all_of(core(), name)}});
     EXPECT_EQ(item_of(core(kLanes, 4), name).count, 4 * item_of(core(), name).count);
   }
@@ -130,12 +120,13 @@ TEST(LanesArea, HasQueuesAndFiltersForEachLane) {
 // A column of 7 slots takes 2 cycles of 4 pixels.
 TEST(LanesArea, SumsTheDifferencesOfAllLanesByATree) {
   expect_all("right pixel delays", {{core(kLanes, 4), {79 * 4 * 8}}});
-  // 4 differences (11 and 8 bits are of one), a tree of 2 adders of 9 bits and one of 10, and the sum.
+  // 4 differences, a tree of 2 adders of 9 bits and one of 10, and the sum.
   const Resources one = all_of(core(), "column modules");
-  expect_all("column modules", {{core(kLanes, 4), one + 80 * Resources{3 * 17 + 2 * 9 + 10}}});
+  expect_all("column modules", {{core(kLanes, 4), one + 80 * Resources{3 * 32 + 2 * 9 + 10, 3 * 8}}});
   // With several rows each pixel moves the sum by one row. A lane keeps 2 of 7 differences.
   const Resources rows = all_of(core(kRows, 4), "column modules");
-  expect_all("column modules", {{core(kRows, 4, kLanes, 4), rows + 80 * Resources{3 * (17 + 8 + 9 + 11)}}});
+  expect_all("column modules",
+             {{core(kRows, 4, kLanes, 4), rows + 80 * Resources{3 * (32 + 8 + 9 + 11), 3 * 8}}});
 }
 
 TEST(LanesArea, DividesTheSlotsOfAColumnAmongTheCaches) {
@@ -148,7 +139,7 @@ TEST(LanesArea, DividesTheSlotsOfAColumnAmongTheCaches) {
 
 TEST(JointTablesArea, HasQueuesOfDisplacementsAndAddsThePosition) {
   const CoreConfig joint = core(kJoint, true);
-  expect_all("table entry queues", {{joint, {2 * 16}}});
+  expect_all("table entry queues", {{joint, 2 * Resources{3 * 16 + 28, 17}}});
   expect_all("source positions", {{joint, {2 * (10 + 9), 2 * 24}},
                                   {core(kJoint, true, kWidth, 512, kHeight, 513), {2 * (9 + 10), 2 * 24}}});
   expect_all("source addresses", {{joint, all_of(core(), "source addresses")}});
@@ -168,8 +159,8 @@ TEST(WordCacheArea, KeepsAnAddressAndAWordForEachSlotOfAColumn) {
 
 // Columns of squares: 7 * 255^2 takes 19 bits, 49 of them 22.
 TEST(SsdArea, SquaresWithMultipliersAndSumsMoreBits) {
-  expect_all("column modules", {{core(kCost, kSsd), 80 * Resources{9 + 19, 19, 0, 1}}});
-  expect_all("window modules", {{core(kCost, kSsd), 80 * Resources{19 + 20 + 22, 22}}});
+  expect_all("column modules", {{core(kCost, kSsd), 80 * Resources{9 + 19, 16 + 2 * 19, 0, 1}}});
+  expect_all("window modules", {{core(kCost, kSsd), 80 * Resources{19 + 18 + 2 * 22, 2 * 22}}});
   expect_all("select-min unit A", {{core(kCost, kSsd, kDisparities, 2), {23 + 1 + 22 + 1, 23 + 24}}});
   expect_all("right pixel delays", {{core(kCost, kSsd), {79 * 8}}});
   EXPECT_EQ(all_of(core(kCost, kSsd, kFetch, Fetch::kLineBuffer), "column modules").multipliers, 80 * 7);
@@ -178,11 +169,11 @@ TEST(SsdArea, SquaresWithMultipliersAndSumsMoreBits) {
 // 24 bits per pixel give 12 counts of 0..2. Their tree has 8 adders of 3 bits, 2 of 4 bits and 1 of 5.
 TEST(CensusArea, CountsDifferentBitsInsteadOfDifferences) {
   constexpr int kPair = 24 + (4 * 3 + 4 * 3 + 2 * 4 + 5);
-  expect_all("column modules", {{core(kCost, census(5)), 80 * Resources{kPair + 8, 8}}});
-  expect_all("window modules", {{core(kCost, census(5)), 80 * Resources{8 + 9 + 11, 11}}});
+  expect_all("column modules", {{core(kCost, census(5)), 80 * Resources{kPair + 8, 5 + 2 * 8}}});
+  expect_all("window modules", {{core(kCost, census(5)), 80 * Resources{8 + 7 + 2 * 11, 2 * 11}}});
   expect_all("right pixel delays", {{core(kCost, census(5)), {79 * 24}}});
   // 8 bits: 4 counts.
-  expect_all("column modules", {{core(kCost, census(3)), 80 * Resources{8 + (2 * 3 + 4) + 6, 6}}});
+  expect_all("column modules", {{core(kCost, census(3)), 80 * Resources{8 + (2 * 3 + 4) + 6, 4 + 2 * 6}}});
 }
 
 TEST(CensusArea, ComparesEachPixelWithItsNeighbours) {
@@ -215,14 +206,14 @@ constexpr Resources kScore{11 + 27 + 26 + 3 * 35, 53, 0, 2 + 1 + 4};
 constexpr Resources kSelect{2 * (7 * 61) + 80 + 79, 0, 0, 2 * 8};
 
 TEST(ZnccArea, SumsProductsInTheModules) {
-  expect_all("column modules", {{core(kCost, kZncc), 80 * Resources{19, 19, 0, 1}}});
-  expect_all("window modules", {{core(kCost, kZncc), 80 * Resources{19 + 20 + 22, 22}}});
+  expect_all("column modules", {{core(kCost, kZncc), 80 * Resources{19, 16 + 2 * 19, 0, 1}}});
+  expect_all("window modules", {{core(kCost, kZncc), 80 * Resources{19 + 18 + 2 * 22, 2 * 22}}});
 }
 
 TEST(ZnccArea, HasTheVariancesOfEachSideOnce) {
-  const Resources sums{(11 + 19) + (37 + 61), (11 + 19) + (14 + 22), 0, 1};
+  const Resources sums{(11 + 19) + (49 + 81), 2 * (11 + 19) + 16 + 2 * (14 + 22), 0, 1};
   expect_all("window statistics", {{core(kCost, kZncc), 2 * (sums + kVariance)}});
-  const Resources two_rows{(11 + 17) + (19 + 33) + 2 * (37 + 61), (11 + 19) + 2 * (14 + 22), 0, 1};
+  const Resources two_rows{(11 + 17) + (19 + 33) + 2 * (49 + 81), 2 * (11 + 19) + 16 + 4 * (14 + 22), 0, 1};
   expect_all("window statistics", {{core(kCost, kZncc, kRows, 2), 2 * (two_rows + 2 * kVariance)}});
   EXPECT_EQ(item_of(core(kCost, kZncc, kRows, 2), "window statistics").count, 4);
   expect_all("right statistics delays", {{core(kCost, kZncc), {0, 79 * 40}},

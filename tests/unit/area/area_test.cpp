@@ -31,20 +31,21 @@ constexpr SumBits kSumBits[] = {
 TEST(ColumnModules, TakeAnAbsoluteDifferenceAndAnAccumulator) {
   for (const SumBits& bits : kSumBits)
     expect_all("column modules",
-               {{core(kWindow, bits.window), 80 * (Resources{17 + bits.column, bits.column})}});
+               {{core(kWindow, bits.window), 80 * (Resources{32 + bits.column, 8 + 2 * bits.column})}});
 }
 
 TEST(ColumnModules, AddUpAWholeColumnBehindALineBuffer) {
   // 3 = 1 + 2 differences in adders of 9 and 10 bits; 7 = (1 + 2) + (2 + 2).
   expect_all("column modules",
-             {{core(kFetch, Fetch::kLineBuffer, kWindow, 3), 80 * Resources{3 * 17 + 9 + 10, 10}},
-              {core(kFetch, Fetch::kLineBuffer), 80 * Resources{7 * 17 + (9 + 10) + (9 + 9 + 10) + 11, 11}}});
+             {{core(kFetch, Fetch::kLineBuffer, kWindow, 3), 80 * Resources{3 * 32 + 9 + 10, 3 * 8 + 2 * 10}},
+              {core(kFetch, Fetch::kLineBuffer),
+               80 * Resources{7 * 32 + (9 + 10) + (9 + 9 + 10) + 11, 7 * 8 + 2 * 11}}});
 }
 
 TEST(WindowModules, TakeAShiftRegisterADifferenceAndAnAccumulator) {
   for (const SumBits& bits : kSumBits) {
     const int srls = bits.window <= 16 ? 1 : 2;
-    const Resources one{srls * bits.column + (bits.column + 1) + bits.window_sum, bits.window_sum};
+    const Resources one{srls * bits.column + (bits.column - 1) + 2 * bits.window_sum, 2 * bits.window_sum};
     expect_all("window modules", {{core(kWindow, bits.window), 80 * one},
                                   {core(kWindow, bits.window, kFetch, Fetch::kLineBuffer), 80 * one}});
   }
@@ -63,7 +64,7 @@ TEST(ModuleArea, IsProportionalToTheDisparities) {
     for (const int disparities : {2, 80, 160, 254})
       expect_all(name, {{core(kDisparities, disparities), disparities * one}});
   }
-  expect_all("candidate marks", {{core(kDisparities, 1), {0, 1}}});
+  expect_all("candidate marks", {{core(kDisparities, 1), {2, 1}}});
 }
 
 // Windows of 7x7 have sums of 14 bits. Each comparison takes a comparator, the decision and a selector.
@@ -94,15 +95,15 @@ TEST(SelectMinUnitB, IsATreeOfOneComparatorLessThanDisparities) {
   EXPECT_EQ(item_of(core(kDisparities, 5), "select-min unit B").count, 4);
 }
 
-TEST(LeftRightCheck, DelaysTheLeftBasedDisparities) {
-  // 17 disparities: 5 bits and a valid bit wait 16 columns; then a difference of 5 bits, the tolerance, the
-  // decision. The tolerance of 4 bits takes one LUT. Without a check only the delays remain.
-  constexpr int kCheck = 1 + (6 + 5) + 2 + 1 + 8;
-  expect_all("left-right check", {{core(kDisparities, 17), {6 + kCheck, 0, 1, 0}},
-                                  {core(kDisparities, 18), {2 * 6 + kCheck, 0, 1, 0}},
-                                  {core(kDisparities, 16), {5 + 1 + (5 + 4) + 1 + 1 + 8, 0, 1, 0}},
+TEST(LeftRightCheck, KeepsDisparitiesInMemoriesOfLuts) {
+  // Two memories of 8 bits with the adders of their addresses; a difference of 8 bits, two selectors and a
+  // valid bit. 16 places take 2 LUTs a bit, 32 take 4. Memories of 64 are joined by a multiplexer.
+  constexpr int kCheck = 4 * 8 + 2 * 8 + 1;
+  expect_all("left-right check", {{core(kDisparities, 16), {2 * (2 * 8 + 4) + kCheck}},
+                                  {core(kDisparities, 17), {2 * (4 * 8 + 5) + kCheck}},
+                                  {core(kDisparities, 128), {2 * (2 * 8 * 8 + 8 + 7) + kCheck}},
                                   {core(kTolerance, 253), all_of(core(), "left-right check")},
-                                  {core(kTolerance, std::nullopt), {5 * 8 + 1 + 8}}});
+                                  {core(kTolerance, std::nullopt), {2 * 8 * 8 + 8 + 7 + 8 + 1}}});
 }
 
 TEST(LeftRightCheck, DelaysTheValidBitOfItsOwnPixel) {
@@ -114,76 +115,63 @@ TEST(LeftRightCheck, DelaysTheValidBitOfItsOwnPixel) {
 }
 
 TEST(LaneArea, HasQueuesOfTableEntriesAndOfPixels) {
-  for (const auto& [slots, luts] : {std::pair{2, 1}, {16, 1}, {17, 2}, {64, 4}}) {
-    expect_all("table entry queues", {{core(kLaneSlots, slots), {2 * 23 * luts}}});
-    expect_all("pixel queues", {{core(kLaneSlots, slots), {(9 + 8) * luts}}});
+  for (const auto& [slots, luts] : {std::pair{2, 2}, {16, 2}, {17, 4}, {64, 8}}) {
+    expect_all("table entry queues", {{core(kLaneSlots, slots), {2 * (23 * (luts + 1) + 28), 2 * 17}}});
+    expect_all("pixel queues", {{core(kLaneSlots, slots), {(9 + 8) * (luts + 1) + 2 * 28, 2 * 17}}});
   }
-  expect_all("table entry queues", {{core(kLaneSlots, 1), {0, 2 * 23}}});
-  expect_all("pixel queues", {{core(kLaneSlots, 1), {0, 9 + 8}}});
+  expect_all("table entry queues", {{core(kLaneSlots, 1), {2 * (23 + 28), 2 * (23 + 17)}}});
 }
 
 TEST(LaneArea, HasTableEntriesOnlyForTables) {
   const CoreConfig one_table = core(kRightTable, false);
   const CoreConfig no_table = core(kRightTable, false, kLeftTable, false);
-  expect_all("table entry queues", {{one_table, {23}}, {no_table, {}}});
-  expect_all("source addresses", {{one_table, {19, 0, 0, 1}}, {no_table, {}}});
-  expect_all("pixel queues", {{one_table, {9 + 8}}, {no_table, {8 + 8}}});
+  expect_all("table entry queues", {{one_table, {3 * 23 + 28, 17}}, {no_table, {}}});
+  expect_all("source addresses", {{one_table, {19 + 26, 0, 0, 1}}, {no_table, {}}});
+  expect_all("pixel queues", {{one_table, {3 * 17 + 56, 34}}, {no_table, {3 * 16 + 56, 34}}});
   expect_all("byte selectors", {{no_table, {2 * 16}}});
 }
 
 TEST(LaneArea, MultipliesRowsByAWidthThatIsNoPowerOfTwo) {
   // 640 x 480 - 1 takes 19 bits, 640 x 820 - 1 takes 20.
-  expect_all("source addresses", {{core(), {2 * 19, 0, 0, 2}},
-                                  {core(kHeight, 820), {2 * 20, 0, 0, 2}},
-                                  {core(kWidth, 516), {2 * 18, 0, 0, 2}},
-                                  {core(kWidth, 4), {}},
-                                  {core(kWidth, 512), {}},
-                                  {core(kWidth, 2048), {}}});
+  expect_all("source addresses", {{core(), {2 * (19 + 26), 0, 0, 2}},
+                                  {core(kHeight, 820), {2 * (20 + 26), 0, 0, 2}},
+                                  {core(kWidth, 516), {2 * (18 + 26), 0, 0, 2}},
+                                  {core(kWidth, 4), {2 * 26}},
+                                  {core(kWidth, 512), {2 * 26}},
+                                  {core(kWidth, 2048), {2 * 26}}});
 }
 
 TEST(ResultArea, HoldsAPartOfAWordAndAQueueOfWords) {
   expect_all("result packer", {{core(), {0, 24}}});
-  expect_all("result queue", {{core(kResultWords, 1), {0, 32}},
-                              {core(kResultWords, 2), {32}},
-                              {core(kResultWords, 16), {32}},
-                              {core(kResultWords, 17), {64}}});
+  expect_all("result queue",
+             {{core(kResultWords, 1), {92, 64 + 32}}, {core(kResultWords, 2), {92, 64, 1, 0}}});
 }
 
 TEST(FilterArea, TakesOneFilterPerSide) {
-  expect_all("filters", {{core(), {2 * 259, 2 * 94, 0, 2 * 10}}});
+  expect_all("filters", {{core(), {2 * 505, 2 * 306, 0, 2 * 10}}});
   for (const char* const name : {"filters", "filter columns", "filter line memories"})
     EXPECT_EQ(item_of(core(kFilter, std::nullopt), name).count, 0) << name;
 }
 
-TEST(FilterArea, KeepsEarlierColumnsInBlockRamOrRegisters) {
-  // 6 columns of 7 pixels: 48 bits in memories of 36.
+TEST(FilterArea, KeepsEarlierColumnsInShiftRegisters) {
+  // 6 columns of 7 pixels, on the left with valid bits.
   expect_all("filter columns",
-             {{core(), block_rams(2 * 2)}, {core(kFetch, Fetch::kLineBuffer), {0, 2 * 48}}});
+             {{core(), {6 * (9 + 8)}}, {core(kFetch, Fetch::kLineBuffer), {0, 6 * (9 + 8)}}});
 }
 
 TEST(FilterArea, HasLineMemoriesOfTheWidthOfTheImage) {
-  // 94 bits.
-  for (const auto& [width, count] :
-       {std::pair{512, 3}, {516, 6}, {1024, 6}, {1028, 11}, {2048, 11}, {2052, 24}, {8192, 47}}) {
+  // 105 bits, and the last row with 9.
+  for (const auto& [width, count] : {std::pair{512, 3 + 1},
+                                     {516, 6 + 1},
+                                     {1024, 6 + 1},
+                                     {1028, 12 + 1},
+                                     {2048, 12 + 1},
+                                     {2052, 27 + 3},
+                                     {8192, 53 + 5}}) {
     const bool has_tables = width <= 2048;
     expect_all("filter line memories", {{core(kWidth, width, kLeftTable, has_tables, kRightTable, has_tables),
                                          block_rams(2 * count)}});
   }
-}
-
-TEST(FilterArea, KeepsValidBitsOfRowsThatTheColumnNoLongerHas) {
-  // 30 sums of 8 bits are 240 bits. With windows of 7 the middle of the left window is 12 rows above the
-  // newest 7 rows. In the second kernel the last sum may have either sign: 241 bits.
-  FilterKernel kernel{31, std::vector<int>(961, 0), 0};
-  kernel.weights[0] = 1;
-  kernel.weights[960] = -1;
-  FilterKernel wider = kernel;
-  std::swap(wider.weights[960], wider.weights[929]);
-  expect_all("filter line memories",
-             {{core(kWidth, 512, kFilter, kernel), block_rams(7 + 7)},
-              {core(kWidth, 512, kFilter, wider), block_rams(8 + 7)},
-              {core(kWidth, 512, kFilter, wider, kLeftTable, false), block_rams(7 + 7)},
-              {core(kWidth, 512, kFilter, wider, kWindow, 31), block_rams(7 + 7)}});
 }
 
 TEST(RowBufferArea, BelongsToTheLineBufferOnly) {
@@ -203,6 +191,17 @@ TEST(RowBufferArea, HoldsTheValidBitsOfTheLeftTable) {
   without_table.left_table = false;
   expect_all("row buffers",
              {{plain, block_rams(2 + 2)}, {filtered, block_rams(3 + 2)}, {without_table, block_rams(2 + 2)}});
+}
+
+TEST(ControlArea, HasAPortForEachTableAndLaneTheResultsAndTheHost) {
+  const auto ports = [](const CoreConfig& config) { return item_of(config, "bank multiplexers").count; };
+  EXPECT_EQ(ports(core()), 6);
+  EXPECT_EQ(ports(core(kRightTable, false)), 5);
+  EXPECT_EQ(ports(core(kJoint, true)), 5);
+  EXPECT_EQ(ports(core(kLanes, 4)), 4 * 4 + 2);
+  expect_all("bank multiplexers", {{core(), 6 * Resources{150, 13}}});
+  EXPECT_EQ(item_of(core(), "slot positions").count, 1);
+  EXPECT_EQ(item_of(core(kFilter, std::nullopt), "slot positions").count, 0);
 }
 
 }  // namespace

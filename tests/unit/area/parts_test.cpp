@@ -25,7 +25,7 @@ TEST(Parts, TakeALutABit) {
   EXPECT_EQ(adder(12), (Resources{12}));
   EXPECT_EQ(selector(12), (Resources{12}));
   EXPECT_EQ(comparator(12), (Resources{13}));
-  EXPECT_EQ(absolute_difference(8), (Resources{9 + 8}));
+  EXPECT_EQ(absolute_difference(8), (Resources{4 * 8}));
   EXPECT_EQ(registers(12), (Resources{0, 12}));
 }
 
@@ -65,6 +65,11 @@ TEST(ShiftRegister, IsAnSrl16UpToALengthOf16) {
   const std::pair<int, Resources> lengths[] = {{0, {}},    {1, {0, 9}}, {2, {9}},  {16, {9}},
                                                {17, {18}}, {64, {36}},  {65, {45}}};
   for (const auto& [length, resources] : lengths) EXPECT_EQ(shift_register(length, 9), resources) << length;
+}
+
+TEST(LutMemory, TakesTwoLutsABitForEach16Words) {
+  const std::pair<int, std::int64_t> cases[] = {{1, 2}, {16, 2}, {17, 4}, {33, 8}, {64, 8}, {128, 16 + 1}};
+  for (const auto& [words, luts] : cases) EXPECT_EQ(lut_memory(words, 9), (Resources{9 * luts})) << words;
 }
 
 TEST(Memory, IsMadeOfBlockRamsThatAreDeepEnough) {

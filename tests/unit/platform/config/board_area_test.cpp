@@ -19,8 +19,8 @@ TEST(BoardArea, IsThatOfItsCoreOnItsDevice) {
 
 TEST(BoardArea, FitsThePapersDevice) {
   const area::Area area = area_of(BoardConfig());
-  EXPECT_EQ(area.slices, 7420);
-  EXPECT_EQ(area.block_rams, 17);
+  EXPECT_EQ(area.slices, 8428);
+  EXPECT_EQ(area.block_rams, 15);
   EXPECT_EQ(area.multipliers, 22);
   EXPECT_TRUE(area.fits());
 }
@@ -38,27 +38,26 @@ TEST(BoardArea, ChangesOnlyWithTheKeysThatChangeTheStructure) {
   EXPECT_NE(slices_after([](BoardConfig& b) { b.matcher.fetch = fpga::Fetch::kLineBuffer; }), slices);
   EXPECT_NE(slices_after([](BoardConfig& b) { b.matcher.lr_tolerance.reset(); }), slices);
   EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.lane_fifo_slots = 17; }), slices);
-  EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.result_fifo_words = 17; }), slices);
-  EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.result_delay_cycles = 1; }), slices);
+  EXPECT_NE(slices_after([](BoardConfig& b) { b.fpga.result_delay_cycles = 2; }), slices);
   EXPECT_NE(slices_after([](BoardConfig& b) { b.allocation.left_lut.reset(); }), slices);
   EXPECT_EQ(slices_after([](BoardConfig& b) { b.allocation.left_lut = "bank0"; }), slices);
   EXPECT_EQ(slices_after([](BoardConfig& b) { b.fpga.clock_mhz = 100; }), slices);
   EXPECT_EQ(slices_after([](BoardConfig& b) { b.matcher.lr_tolerance = 5; }), slices);
 }
 
-// 7420 slices, 17 block RAMs and 22 multipliers.
+// 8428 slices, 15 block RAMs and 22 multipliers.
 TEST(BoardArea, NamesTheSmallestDeviceThatFits) {
   BoardConfig board;
   const std::string pins = "; 548 pins: ff1152 has 824, ff1517 1104";
-  EXPECT_EQ(device_text(board), "device xc2v6000: fits; the smallest that fits: xc2v1500" + pins);
+  EXPECT_EQ(device_text(board), "device xc2v6000: fits; the smallest that fits: xc2v2000" + pins);
   board.fpga.device = "xc2v1000";
-  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: xc2v1500; 548 pins");
+  EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: xc2v2000; 548 pins");
   board.matcher.cost = {kernels::CostKind::kZncc, 0};
   EXPECT_EQ(device_text(board), "device xc2v1000: does not fit; the smallest that fits: none; 548 pins");
   board = BoardConfig();
   board.fpga.package = "ff1517";
   EXPECT_EQ(device_text(board),
-            "device xc2v6000: fits; the smallest that fits: xc2v1500; 548 of 1104 pins of ff1517");
+            "device xc2v6000: fits; the smallest that fits: xc2v2000; 548 of 1104 pins of ff1517");
 }
 
 TEST(BoardArea, CountsThePinsOfThePackage) {
