@@ -115,6 +115,14 @@ bool is_plan(const std::string& name, const std::string* text) {
   }
 }
 
+// Whether a goal or a requirement names a figure.
+bool names(const explore::SearchWishes& wishes, const std::string& figure) {
+  const auto has = [&](const explore::Condition& one) { return one.text.find(figure) != std::string::npos; };
+  return std::any_of(wishes.goals.begin(), wishes.goals.end(),
+                     [&](const auto& goal) { return has(goal.figure); }) ||
+         std::any_of(wishes.requirements.begin(), wishes.requirements.end(), has);
+}
+
 // Whether a goal or a condition names a figure that only a whole computer has.
 bool names_computer(const OptimiseOptions& options) {
   for (const Option* const option : {&options.requirements, &options.maxima, &options.minima}) {
@@ -184,6 +192,7 @@ explore::SearchStore::Asked asked_of(const Question& question, const std::string
   explore::SearchStore::Asked asked = {{"version", process::kVersion},
                                        {"plan", question.text},
                                        {"board", question.plan->board_text()},
+                                       {"pictures", question.plan->run().pairs},
                                        {"tables", tables}};
   std::string goals;
   for (const auto& goal : question.wishes.goals)
@@ -381,6 +390,11 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
               ? "proven: every other board was simulated, or is ruled out by a bound\n"
               : fmt::format("not proven: {}\n",
                             progress_text(search.state(), search.wishes().goals.size() == 1, answer.seconds));
+  const auto& figures = explore::accuracy_figures();
+  const bool judges = std::any_of(figures.begin(), figures.end(), [&](const std::string& figure) {
+    return names(answer.question.wishes, figure);
+  });
+  if (judges) return text;
   const std::vector<std::string> varied = plan.varied();
   const bool changes_disparities = std::any_of(varied.begin(), varied.end(), [](const std::string& path) {
     const platform::Key* const key = platform::find_key(path);
@@ -392,12 +406,13 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
 
 int optimise(const OptimiseOptions& options) {
   Question question = question_of(options);
-  if (!question.plan->pairs().empty() || !question.plan->seeds().empty())
-    process::refuse(
-        "run.pairs, run.synthetic: a search does not compute accuracy: leave them out, and sweep the front");
   const auto calibration = calibration_of(*question.plan, options.calibration, options.sent);
   const explore::Plan& plan = *question.plan;
-  const explore::BoardModel model = runs::board_model(calibration ? &calibration->tables : nullptr);
+  process::Problems problems;
+  runs::PointQuality quality(*question.plan, problems);
+  problems.check();
+  const explore::BoardModel model =
+      runs::board_model(calibration ? &calibration->tables : nullptr, std::move(quality));
   const unsigned processes =
       options.jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
   std::unique_ptr<Search> search;

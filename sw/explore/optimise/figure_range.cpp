@@ -132,21 +132,32 @@ std::optional<bool> Expression::holds(const Known& known) {
   return computed(known).value_or(0) != 0;
 }
 
-const std::vector<std::string>& figures_without_simulation() {
-  static const std::vector<std::string> kNames = {"area.lut_equivalents",
-                                                  "area.slices",
-                                                  "area.slices_percent",
-                                                  "area.luts",
-                                                  "area.flip_flops",
-                                                  "area.block_rams",
-                                                  "area.block_rams_percent",
-                                                  "area.multipliers",
-                                                  "area.multipliers_percent",
-                                                  "pins",
-                                                  "banks_used"};
+const std::vector<std::string>& accuracy_figures() {
+  static const std::vector<std::string> kNames = {"accuracy.bad_1_percent", "accuracy.bad_2_percent",
+                                                  "accuracy.answered_percent"};
   return kNames;
 }
 
+const std::vector<std::string>& figures_without_simulation() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names = {"area.lut_equivalents",
+                                      "area.slices",
+                                      "area.slices_percent",
+                                      "area.luts",
+                                      "area.flip_flops",
+                                      "area.block_rams",
+                                      "area.block_rams_percent",
+                                      "area.multipliers",
+                                      "area.multipliers_percent",
+                                      "pins",
+                                      "banks_used"};
+    names.insert(names.end(), accuracy_figures().begin(), accuracy_figures().end());
+    return names;
+  }();
+  return kNames;
+}
+
+// Those of the first names.
 FigureRanges figures_without_simulation(const platform::BoardConfig& board) {
   const area::Area its = platform::area_of(board);
   const std::vector<bool> used = platform::used_banks(board);

@@ -73,8 +73,12 @@ class Expression {
 // The names in an SQL text, such as "image.width", outside its quoted texts.
 std::vector<std::string> names_in(const std::string& text);
 
-// The figures of a board that need no simulation: area, pins, banks in use.
+// The accuracy of the disparities, which follows from the pixels alone.
+const std::vector<std::string>& accuracy_figures();
+
+// The figures of a board that need no simulation: area, pins, banks in use, accuracy.
 const std::vector<std::string>& figures_without_simulation();
+// Those of them that need no pictures.
 FigureRanges figures_without_simulation(const platform::BoardConfig& board);
 
 }  // namespace stereotlm::explore

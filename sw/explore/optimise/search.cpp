@@ -31,6 +31,7 @@ constexpr const char* kUncertainty = "frames_per_second.steady_uncertainty";
 constexpr const char* kLostPixels = "lost_pixels";
 constexpr const char* kExactLeast = "frames_per_second.exact_least";
 constexpr const char* kExactMost = "frames_per_second.exact_most";
+constexpr double kNoValue = -1;                   // of an accuracy
 constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
 constexpr std::size_t kPieces = 32;               // for each process, of a round
 constexpr std::size_t kRunsOfComputers = 2;       // the same, of a round with whole computers
@@ -135,6 +136,7 @@ struct Combination {
     std::vector<std::optional<bool>> requirements;
   };
   std::vector<std::unique_ptr<OfUse>> of_use;
+  FigureRanges accuracy;
   std::vector<std::optional<std::uint64_t>> least_cycles_of_way;
   std::vector<std::string> key_of_way;
   bool takes_alike = false;  // all banks take the same for an access
@@ -146,7 +148,8 @@ struct Combination {
 // Evaluates boards of the space. Each process has its own copy.
 class Search::Space {
  public:
-  Space(const Plan& plan, const SearchWishes& wishes, const BoardModel& model);
+  // `results`: those of the search.
+  Space(const Plan& plan, const SearchWishes& wishes, const BoardModel& model, const Results& results);
 
   std::size_t goals() const { return goals_.size(); }
   bool is_maximum(std::size_t goal) const { return maxima_[goal]; }
@@ -162,6 +165,13 @@ class Search::Space {
     std::size_t unmet = 0;  // the first that no placement meets
     Values best{};
   };
+  bool needs_accuracy() const { return !accuracy_.empty(); }
+  // The key of a result: boards with the same key have the same accuracy.
+  static std::string accuracy_key(const BoardConfig& board);
+  // Adds the board of a combination, if it has one.
+  void add_board(std::uint64_t number, std::map<std::string, BoardConfig>& by_accuracy_key);
+  std::vector<double> accuracy(const BoardConfig& board) const;
+
   // The best of all placements of a combination.
   Estimate estimate(Combination& of);
   Estimate estimate(Combination& of, const Placements::Group& group, std::uint64_t placement);
@@ -194,20 +204,24 @@ class Search::Space {
   const Plan& plan_;
   const SearchWishes& wishes_;
   const BoardModel& model_;
+  const Results& results_;
   std::vector<Expression> goals_;
   std::vector<bool> maxima_;
   std::vector<Expression> requirements_;
-  std::vector<std::string> needed_;  // figures that only a simulation gives, or those of the core
-  bool needs_all_ = false;           // a figure beyond those of the core
-  bool needs_energy_ = false;        // that of sdram does not follow from the cycles alone
+  std::vector<std::string> needed_;    // figures that only a simulation gives, or those of the core
+  std::vector<std::string> accuracy_;  // its figures that are needed
+  bool is_judged_ = true;              // whether the last combination has them
+  bool needs_all_ = false;             // a figure beyond those of the core
+  bool needs_energy_ = false;          // that of sdram does not follow from the cycles alone
   std::unique_ptr<Conditions> conditions_;
   std::map<std::string, std::shared_ptr<const Placements>> placements_;
   std::unordered_map<std::string, std::uint64_t> cycles_;  // bounds, by their keys
   Combination last_;
 };
 
-Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardModel& model)
-    : plan_(plan), wishes_(wishes), model_(model) {
+Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardModel& model,
+                     const Results& results)
+    : plan_(plan), wishes_(wishes), model_(model), results_(results) {
   std::set<std::string> names;
   const auto& without = figures_without_simulation();
   names.insert(without.begin(), without.end());
@@ -248,6 +262,13 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
     for (const Expression& one : *all) {
       needed.insert(one.figures().begin(), one.figures().end());
     }
+  }
+  for (const std::string& name : accuracy_figures()) {
+    if (needed.count(name) == 0) continue;
+    if (!model.accuracy)
+      throw platform::BoardError(
+          {{plan.path(), fmt::format("{}: of pictures: give {} or {}", name, kPairsPath, kSyntheticPath)}});
+    accuracy_.push_back(name);
   }
   for (const std::string& name : without) needed.erase(name);
   for (const std::string& name : needed)
@@ -306,6 +327,13 @@ Combination& Search::Space::take(std::uint64_t number, BoardConfig board, const 
   if (const auto problem = plan_.tables_problem(last_.board))
     rules.push_back(fmt::format("{}: {}", kCalibrationPath, *problem));
   if (!rules.empty()) return impossible(fmt::format("{}", fmt::join(rules, "; ")));
+  for (std::size_t i = 0; i < accuracy_.size() && is_judged_; ++i) {
+    const std::string key = accuracy_key(last_.board);
+    const auto known = results_.find(key);
+    const double value = (known != results_.end() ? known->second : accuracy(last_.board))[i];
+    if (value == kNoValue) return impossible(fmt::format("{}: has no value: no pixel counts", accuracy_[i]));
+    last_.accuracy.emplace(accuracy_[i], Range::of(value));
+  }
   last_.placements = all;
   last_.run.frames = frames_of(last_.run, last_.board);
   last_.turns = last_.run.frames / all->turn();
@@ -329,6 +357,30 @@ Combination& Search::Space::take(std::uint64_t number, BoardConfig board, const 
   values.push_back({kFramesPath, static_cast<std::int64_t>(last_.run.frames)});
   if (!conditions_->hold(values)) last_.verdict = Verdict::kExcluded;
   return last_;
+}
+
+std::string Search::Space::accuracy_key(const BoardConfig& board) {
+  std::string text = "accuracy\n";
+  for (const platform::Key& key : platform::board_keys()) {
+    if (platform::has_value(key) && effects_of_key(key.path).disparities)
+      text += platform::value_text(platform::value_of(key, board)) + '\n';
+  }
+  return result_key(text);
+}
+
+void Search::Space::add_board(std::uint64_t number, std::map<std::string, BoardConfig>& by_accuracy_key) {
+  is_judged_ = false;
+  const Combination& its = combination(number);
+  if (its.verdict == Verdict::kUnknown) by_accuracy_key.emplace(accuracy_key(its.board), its.board);
+  last_ = {};
+  is_judged_ = true;
+}
+
+std::vector<double> Search::Space::accuracy(const BoardConfig& board) const {
+  const std::map<std::string, double> all = model_.accuracy(board);
+  std::vector<double> values;
+  for (const std::string& name : accuracy_) values.push_back(all.count(name) > 0 ? all.at(name) : kNoValue);
+  return values;
 }
 
 std::uint64_t Search::Space::least_cycles_of_way(Combination& of, std::uint32_t way, bool waitless_alone) {
@@ -375,6 +427,7 @@ std::uint64_t Search::Space::least_cycles(Combination& of, const Placements::Gro
 
 Combination::OfUse Search::Space::facts_of(const Combination& of, const BoardConfig& board) {
   Combination::OfUse facts = {board, figures_without_simulation(board), {}, {}};
+  facts.figures.insert(of.accuracy.begin(), of.accuracy.end());
   const Known known = {facts.board, of.run, facts.figures};
   for (Expression& goal : goals_)
     facts.goals.push_back(goal.is_fixed() ? std::optional(goal.range(known)) : std::nullopt);
@@ -556,7 +609,7 @@ struct Search::Heap {
 Search::Search(const Plan& plan, const SearchWishes& wishes, const BoardModel& model, unsigned processes)
     : wishes_(wishes),
       processes_(processes),
-      space_(std::make_unique<Space>(plan, wishes_, model)),
+      space_(std::make_unique<Space>(plan, wishes_, model, results_)),
       heap_(std::make_unique<Heap>()) {
   if (plan.size() > kMostCombinations)
     throw std::length_error(
@@ -639,6 +692,30 @@ void Search::add_to_front(const std::vector<Range>& values, std::uint64_t combin
     point->first.insert(std::upper_bound(point->first.begin(), point->first.end(), number), number);
     if (point->first.size() > kMostListed) point->first.pop_back();
   }
+}
+
+// Boards that differ in nothing that changes the disparities are computed once.
+bool Search::compute_accuracy(const std::function<bool()>& keep_going) {
+  std::map<std::string, BoardConfig> boards;  // by the keys of their results
+  for (std::uint64_t number = 0; number < verdicts_.size(); ++number) {
+    if (number % kCombinationsOfPiece == 0 && !keep_going()) return false;
+    space_->add_board(number, boards);
+  }
+  std::vector<std::pair<std::string, BoardConfig>> left;
+  for (auto& one : boards) {
+    if (results_.count(one.first) == 0) left.push_back(one);
+  }
+  const auto work = [&](std::size_t piece) {
+    Bytes bytes;
+    bytes.put_numbers(space_->accuracy(left[piece].second));
+    return bytes.text();
+  };
+  const auto take = [&](std::size_t piece, const std::string& message) {
+    const auto values = Bytes(message).get_numbers<double>();
+    results_.emplace(left[piece].first, values);
+    new_results_.emplace(left[piece].first, values);
+  };
+  return do_in_processes(left.size(), processes_, work, take, keep_going);
 }
 
 // Finds the verdict and the bounds of each combination.
@@ -821,6 +898,7 @@ SearchState Search::state() const {
 
 bool Search::run(const std::function<bool(const SearchState& state)>& keep_going) {
   const auto goes_on = [&] { return keep_going(state()); };
+  if (space_->needs_accuracy() && !compute_accuracy(goes_on)) return false;
   if (!assess(goes_on)) return false;
   while (!heap_->nodes.empty()) {
     if (!step(goes_on)) return false;

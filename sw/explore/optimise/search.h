@@ -39,6 +39,9 @@ struct BoardModel {
   std::function<double(const platform::BoardConfig& board)> steady_bound;
   // All figures of a point.
   std::function<Figures(const Point& point)> simulate;
+  // The accuracy_figures() over the pictures of the plan; a figure without a value is missing. Null if the
+  // plan has no pictures.
+  std::function<std::map<std::string, double>(const platform::BoardConfig& board)> accuracy = nullptr;
 };
 
 // The figures of BoardModel::figures_of_cycles.
@@ -168,6 +171,7 @@ class Search {
   struct Node;
   struct Heap;
 
+  bool compute_accuracy(const std::function<bool()>& keep_going);
   bool assess(const std::function<bool()>& keep_going);
   bool step(const std::function<bool()>& keep_going);
   void add_to_front(const std::vector<Range>& values, std::uint64_t combination,

@@ -1,5 +1,7 @@
 #include "sw/runs/simulation/board_model.h"
 
+#include <array>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -67,7 +69,7 @@ std::map<std::string, double> figures_of_cycles(const BoardConfig& board, std::u
 
 }  // namespace
 
-explore::BoardModel board_model(const platform::Tables* tables) {
+explore::BoardModel board_model(const platform::Tables* tables, PointQuality quality) {
   const auto all = std::make_shared<AccessesOfBoards>(tables);
   const auto simulator =
       std::make_shared<PointSimulator>(tables == nullptr ? PointSimulator() : PointSimulator(*tables));
@@ -91,6 +93,17 @@ explore::BoardModel board_model(const platform::Tables* tables) {
     return platform::steady_bound(board, all->accesses(board));
   };
   model.simulate = [simulator](const explore::Point& point) { return (*simulator)(point); };
+  if (!quality.has_pictures()) return model;
+  model.accuracy = [judge = std::make_shared<PointQuality>(std::move(quality)),
+                    tables](const BoardConfig& board) {
+    const stats::Accuracy its = *judge->of(board, tables);
+    std::map<std::string, double> figures;
+    const std::array values = {its.bad_1_percent, its.bad_2_percent, its.answered_percent};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i]) figures.emplace(explore::accuracy_figures()[i], *values[i]);
+    }
+    return figures;
+  };
   return model;
 }
 

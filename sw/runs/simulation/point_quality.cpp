@@ -64,7 +64,7 @@ bool PointQuality::Known::is_same(const Known& other) const {
 
 std::optional<stats::Accuracy> PointQuality::of(const platform::BoardConfig& board,
                                                 const platform::Tables* tables) {
-  if (pairs_.empty() && seeds_.empty()) return std::nullopt;
+  if (!has_pictures()) return std::nullopt;
   const fpga::CoreConfig core = core_config(board);
   Known asked;
   std::tie(asked.width, asked.height) = std::tie(core.width, core.height);

@@ -23,6 +23,7 @@ class PointQuality {
   // Loads the pairs of a plan, or takes its seeds, and tells the plan what its pairs hold. Reports problems.
   PointQuality(explore::Plan& plan, process::Problems& problems);
 
+  bool has_pictures() const { return !pairs_.empty() || !seeds_.empty(); }
   // `tables`: of the calibration; null without one. Nullopt if the plan has no pictures.
   std::optional<stats::Accuracy> of(const platform::BoardConfig& board, const platform::Tables* tables);
 

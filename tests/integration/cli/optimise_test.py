@@ -65,6 +65,29 @@ class Optimise(ProgramTest):
             command = point["command"].split()
             self.assertEqual(command[:3], ["stereotlm", "explain", "fpl2003"])
 
+    def test_accuracy_is_a_goal_and_a_requirement(self):
+        """Compared with a sweep of the same plan."""
+        plan = ("board: fpl2003\nrun: {source: preloaded, synthetic: [1, 2]}\n"
+                "set: {image.width: 64, image.height: 48, matcher.disparities: 16}\n"
+                "vary:\n  matcher.window: [3, 5, 7, 9, 11]\n  matcher.lr_tolerance: [0, 1, 2]\n"
+                "  matcher.fetch: [column, line_buffer]\n")
+        self.succeeds(run("sweep", self.plan(plan), "--out", self.store))
+        with sqlite3.connect(self.store) as database:
+            rows = database.execute("SELECT accuracy_bad_1_percent, -frames_per_second_core FROM plain "
+                                    "WHERE accuracy_answered_percent >= 80").fetchall()
+        self.assertGreater(30, len(rows))
+        front = {a for a in rows if not any(b != a and b[0] <= a[0] and b[1] <= a[1] for b in rows)}
+        self.store.unlink()
+        wishes = ["--minimise", "accuracy.bad_1_percent", "--maximise", "frames_per_second.core", "--for",
+                  "accuracy.answered_percent >= 80"]
+        for _ in range(2):  # the second time it is read
+            found = self.found(self.plan(plan), *wishes, "--out", self.store)
+            values = [[value["least"] for value in point["values"]] for point in found["front"]]
+            self.assertEqual({(bad, -rate) for rate, bad in values}, front)
+        without = plan.replace(", synthetic: [1, 2]", "")
+        self.refused_in_one_line(run("optimise", self.plan(without), *wishes),
+                                 "accuracy.bad_1_percent: of pictures: give run.pairs or run.synthetic")
+
     def test_a_computer_that_loses_pixels_does_not_count(self):
         """Compared with a sweep of the same plan."""
         plan = COMPUTER + "run: {source: camera}\n"
