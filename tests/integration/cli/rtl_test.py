@@ -20,13 +20,14 @@ SMALL = sets("image.width=24", "image.height=16", "matcher.window=3", "matcher.d
 
 
 class Rtl(ProgramTest):
-    def bench(self):
-        return subprocess.run(["make", "-s", "-C", self.out], capture_output=True, text=True, check=False)
+    def make(self, *target):
+        return subprocess.run(["make", "-s", "-C", self.out, *target], capture_output=True, text=True,
+                              check=False)
 
     def is_as_run(self, cycles, *options):
         """The test bench of this board and pair; `cycles`: of its frames."""
         self.succeeds(run("rtl", "fpl2003", *options, "--out", self.out))
-        process = self.bench()
+        process = self.make()
         said = self.succeeds(process)
         self.assertNotIn("Warning", process.stderr)
         for frame, of_frame in enumerate(cycles):
@@ -50,7 +51,7 @@ class Rtl(ProgramTest):
         for file in ("disparity.hex", "cycles.hex"):
             right = (self.out / file).read_text()
             self.file(self.out / file, right[:-2] + f"{int(right[-2], 16) ^ 1:x}\n")
-            process = self.bench()
+            process = self.make()
             self.assertNotEqual(process.returncode, 0)
             self.assertIn("the core is NOT as run\n", process.stdout)
             self.file(self.out / file, right)
@@ -59,6 +60,7 @@ class Rtl(ProgramTest):
     def test_the_bench_of_the_paper_is_as_run(self):
         pair = [word for side in ("left", "right") for word in (f"--{side}", f"{PICTURES}/{side}01.jpg")]
         self.is_as_run([2151016] * 2, *pair)
+        self.assertRegex(self.succeeds(self.make("synthesis")), r"\n +SRL16E +\d+\n")
         shutil.rmtree(self.out)
         shutil.rmtree(self.folder / "result")
         self.is_as_run([2151016] * 2, *pair, *sets("fpga.result_delay_cycles=16",
