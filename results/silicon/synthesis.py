@@ -67,7 +67,7 @@ def mapped(out):
     return [f"{synth} begin:map_memory",
             "maccmap -unmap",  # adds three numbers by two carry chains
             f"{synth} map_memory:map_ffs", "xilinx_srl -fixed -minlen 3",  # synth_xilinx has none for xc2v
-            f"techmap -map {HERE}/srl16.v", f"{synth} map_ffs:", f"write_json {out}"]
+            f"techmap -map {RTL}/board/srl16.v", f"{synth} map_ffs:", f"write_json {out}"]
 
 
 def cells_of(netlist, blocks=frozenset()):

@@ -103,7 +103,8 @@ class Allocate(ProgramTest):
 
     def pasted(self, said):
         """The words after `stereotlm run` of the command that the text ends with, as a shell reads them."""
-        command = re.search(r"prints (\S.*) frames/s as (?:core|long run|steady):\n  (stereotlm run .*)\n", said)
+        command = re.search(r"prints (\S.*) frames/s as (?:core|long run|steady):\n  (stereotlm run .*)\n",
+                            said)
         return command[1], shlex.split(command[2])[2:]
 
     def query(self, store, *statements):

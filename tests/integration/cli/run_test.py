@@ -48,7 +48,7 @@ class ResultFiles(ProgramTest):
     def test_config_loads_back(self):
         self.succeeds(self.run_small("--out", self.out, *sets("matcher.lr_tolerance=off")))
         config = self.out / "config.yaml"
-        small = self.succeeds(run("check", "fpl2003", *SMALL))
+        small = self.succeeds(run("check", "fpl2003", *SMALL, *sets("matcher.lr_tolerance=off")))
         self.assertEqual(self.succeeds(run("check", config)), small.replace("fpl2003", str(config)))
         self.assertIn("lr_tolerance: \"off\"", config.read_text())
         again = self.folder / "again"
