@@ -99,11 +99,11 @@ std::string problems_of(const BoardConfig& board, std::uint64_t frames, bool& is
                       static_cast<double>(results.back().time_ps - results[from].time_ps);
   const double cut = 4.0 / static_cast<double>(counted);  // deliveries of a pattern that the window cuts
   std::string text;
-  const auto alone = platform::proven_rate(
-      board, accesses,
-      platform::core_frame_cycles(board, platform::access_patterns(board, &tables),
-                                  platform::allocation_period_frames(board)),
-      platform::steady_bound(board, accesses));  // as searches take it
+  const auto alone =
+      platform::proven_rate(board, accesses,
+                            platform::core_frame_cycles(board, platform::access_patterns(board, &tables),
+                                                        platform::allocation_period_frames(board)),
+                            platform::steady_bound(board, accesses));  // as searches take it
   for (const platform::ProvenRate& its : {*proven, *all, *alone}) {
     if (its.least > its.most || rate < its.least * (1 - cut) || rate > its.most * (1 + cut))
       text += fmt::format("{} frames/s of {} frames, not in {} .. {}\n", rate, frames, its.least, its.most);
