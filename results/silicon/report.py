@@ -100,7 +100,8 @@ Made by `results/silicon/run` (after `./setup tests`). Yosys 0.23 maps each bloc
 it as often as it needs. All cores are for 640x480, with the queues and banks of `fpl2003`, and with registers
 in the whole path. A cell that the data sheet DS031 does not have fails the study:
 [srl16.v](../../models/rtl/board/srl16.v) cuts shift registers to SRL16E. Slices are those at full packing:
-half of the LUTs and SRL16s, or of the flip-flops, whichever is more. All figures: [cores.csv](cores.csv), [blocks.csv](blocks.csv).
+half of the LUTs and SRL16s, or of the flip-flops, whichever is more. All figures: [cores.csv](cores.csv),
+[blocks.csv](blocks.csv).
 
 ## Area
 
