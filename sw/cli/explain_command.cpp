@@ -47,7 +47,7 @@ std::string shared_bank_text(const BoardConfig& board, const Explanation& explan
 
 std::string head_text(const BoardConfig& board, const platform::Tables& tables,
                       const Explanation& explanation) {
-  const explore::StoredRow& row = explanation.figures();
+  const runs::NamedFigures& row = explanation.figures();
   const bool camera = explanation.camera();
   const std::string stepped = runs::stepped_text(board, tables, camera);
   const std::string of = camera ? "bound.system" : "bound.core";
@@ -222,7 +222,6 @@ int explain(const ExplainOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   const auto& board = loaded.board;
-  check_temporary_folder(problems);
   if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
     problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
   problems.check();

@@ -8,13 +8,17 @@
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <thread>
+#include <tuple>
 #include <utility>
+#include <variant>
 
 #include "models/capture/camera_timing.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
 #include "platform/config/board_area.h"
 #include "platform/figures/derived_figures.h"
+#include "sw/explore/optimise/workers.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
 #include "sw/runs/progress.h"
@@ -97,7 +101,7 @@ std::string bound_text(const Explanation& explanation, const std::string& owner,
 // Why captures lose pixels. First what is certain: a bus needs longer for a pair of pictures than the pair
 // takes to arrive, or cannot move whole pictures at this rate.
 std::string lost_pixels_text(const Explanation& explanation) {
-  const explore::StoredRow& row = explanation.figures();
+  const NamedFigures& row = explanation.figures();
   const std::int64_t lost = explanation.now().lost_pixels;
   const std::string text =
       fmt::format(": captures lose {} pixel{} while {} frames are delivered, so pictures are torn", lost,
@@ -155,7 +159,7 @@ std::string waits_text(const Explanation& explanation) {
 // The share of the cycles in which the matcher waits because the result queue is too short, in percent; 0 if
 // it does not limit the board.
 double result_queue_percent(const Explanation& explanation) {
-  const explore::StoredRow& row = explanation.figures();
+  const NamedFigures& row = explanation.figures();
   const double cycles = static_cast<double>(row.integer("cycles"));
   const double lost = cycles * (1 - row.real("frames_per_second.core") / row.real("bound.core"));
   std::int64_t stalled = 0;
@@ -303,7 +307,59 @@ void add_changes(const Explanation& explanation, Json& document) {
   document["failed"] = std::move(failed);
 }
 
+// A message between processes: the figures of a board, or why it has none.
+std::string message_of(const Json& document) {
+  const auto bytes = Json::to_cbor(document);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string message_of(const explore::Figures& figures) {
+  Json values = Json::array();
+  for (const platform::BoardValue& value : figures.values)
+    std::visit([&](const auto& its) { values.push_back({value.path, its}); }, value.value);
+  Json blame = Json::array();
+  for (const platform::BlameRow& row : figures.blame)
+    blame.push_back({row.port, row.bank, row.by, row.cycles});
+  return message_of(Json{{"values", std::move(values)}, {"blame", std::move(blame)}});
+}
+
+std::string message_of(const std::string& failure) { return message_of(Json{{"failure", failure}}); }
+
+explore::Figures figures_of_message(const Json& document) {
+  explore::Figures figures;
+  for (const Json& pair : document["values"]) {
+    const Json& value = pair[1];
+    figures.values.push_back({pair[0], value.is_string() ? platform::KeyValue(value.get<std::string>())
+                                       : value.is_number_integer()
+                                           ? platform::KeyValue(value.get<std::int64_t>())
+                                           : platform::KeyValue(value.get<double>())});
+  }
+  for (const Json& row : document["blame"]) figures.blame.push_back({row[0], row[1], row[2], row[3]});
+  return figures;
+}
+
 }  // namespace
+
+NamedFigures::NamedFigures(const explore::Figures& figures) {
+  for (const platform::BoardValue& value : figures.values) values_.emplace(value.path, value.value);
+}
+
+std::string NamedFigures::text(const std::string& name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? "" : platform::value_text(found->second);
+}
+
+std::int64_t NamedFigures::integer(const std::string& name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? 0 : std::get<std::int64_t>(found->second);
+}
+
+double NamedFigures::real(const std::string& name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end()) return 0;
+  const auto* const integer = std::get_if<std::int64_t>(&found->second);
+  return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(found->second);
+}
 
 Explanation::Explanation(const platform::BoardConfig& board, const platform::Tables& tables, bool camera,
                          std::uint64_t frames)
@@ -317,46 +373,59 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
       knobs_(explore::knob_steps(
           board, camera,
           tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt)),
-      points_({1 + knobs_.possible.size(),
-               [this](std::uint64_t number) {
-                 return explore::make_point(
-                     number, number == 0 ? board_ : knobs_.possible.at(number - 1).board, run_);
-               }}),
+      outcomes_(1 + knobs_.possible.size()),
       accesses_(platform::frame_accesses(board, tables)) {
   const std::uint64_t turn = platform::allocation_period_frames(board);
   for (std::uint64_t frame = 0; frame < turn; ++frame)
     bounds_.push_back(platform::frame_bounds(board, accesses_, frame));
 }
 
+const platform::BoardConfig& Explanation::board_of(std::size_t number) const {
+  return number == 0 ? board_ : knobs_.possible.at(number - 1).board;
+}
+
 bool Explanation::simulate(PointSimulator simulator) {
-  ProgressLine progress(fmt::format("{} boards are simulated, each for {} frames", points_.size, frames()),
-                        stepped_text(board_, tables_, run_.camera));
-  batch_.run(
-      points_,
-      [&](const explore::Point& point) { return simulator(point, {}, run_.camera && point.number == 0); },
-      [&](const explore::SweepCounts& done) {
-        progress.show(done.done(), done.total, [&](double seconds) {
-          return progress_text(done.done(), done.total, "boards simulated", seconds);
-        });
-        return !process::interrupted();
-      });
-  if (!batch_.has(points_.point(0))) return false;
+  ProgressLine progress(
+      fmt::format("{} boards are simulated, each for {} frames", outcomes_.size(), frames()),
+      stepped_text(board_, tables_, run_.camera));
+  const auto work = [&](std::size_t number) {
+    try {
+      const bool with_core_waits = run_.camera && number == 0;
+      return message_of(simulator(explore::make_point(number, board_of(number), run_), {}, with_core_waits));
+    } catch (const std::exception& error) {
+      return message_of(fmt::format("{}: {}", board_of(number).name, error.what()));
+    }
+  };
+  std::size_t done = 0;
+  const auto take = [&](std::size_t number, const std::string& message) {
+    const Json document = Json::from_cbor(message);
+    ++done;
+    if (document.contains("failure")) {
+      outcomes_[number] = {{}, document["failure"]};
+      return;
+    }
+    const explore::Figures figures = figures_of_message(document);
+    outcomes_[number] = {NamedFigures(figures), ""};
+    if (number == 0) blames_ = figures.blame;
+  };
+  explore::do_in_processes(outcomes_.size(), std::max(1U, std::thread::hardware_concurrency()), work, take,
+                           [&] {
+                             progress.show(done, outcomes_.size(), [&](double seconds) {
+                               return progress_text(done, outcomes_.size(), "boards simulated", seconds);
+                             });
+                             return !process::interrupted();
+                           });
+  if (!outcomes_[0]) return false;
   now_ = rate_of(0);
   if (!now_.failure.empty()) throw std::runtime_error(now_.failure);
-  figures_ = std::make_unique<explore::StoredRow>(batch_.path());
-  figures_->find(points_.point(0).hash);
-  busiest_ = busiest_bank_of(0, board_);
-  sqlite::Database store(batch_.path(), sqlite::Database::Access::kRead);
-  sqlite::Statement find(
-      store, "SELECT port, bank, by, cycles FROM blame WHERE hash = ? ORDER BY cycles DESC, port, bank, by");
-  find.bind(1, points_.point(0).hash);
-  while (find.step()) {
-    const auto cycles_of_wait = static_cast<std::uint64_t>(find.integer(3));
-    blames_.push_back({find.text(0), find.text(1), find.text(2), cycles_of_wait});
-  }
+  figures_ = outcomes_[0]->figures;
+  busiest_ = busiest_bank_of(0);
+  std::sort(blames_.begin(), blames_.end(), [](const platform::BlameRow& a, const platform::BlameRow& b) {
+    return std::tie(b.cycles, a.port, a.bank, a.by) < std::tie(a.cycles, b.port, b.bank, b.by);
+  });
   group_blames_ = by_group(blames_, static_cast<std::uint64_t>(board_.fpga.lanes));
   read_steps();
-  const auto cycles = nlohmann::json::parse(figures_->text("frame_cycles")).get<std::vector<double>>();
+  const auto cycles = nlohmann::json::parse(figures_.text("frame_cycles")).get<std::vector<double>>();
   compare_resources(cycles);
   share_time(cycles);
   return true;
@@ -367,24 +436,21 @@ std::string Explanation::interruption() const {
   return fmt::format("{} of {} changes were simulated", simulated_, knobs_.possible.size());
 }
 
-Explanation::Rate Explanation::rate_of(std::uint64_t number) {
-  try {
-    const explore::StoredRow& row = batch_.row_of(points_.point(number));
-    const double energy = row.real("energy.memory_mj_per_frame");
-    if (!run_.camera) return {row.real("frames_per_second.core"), 0, 0, energy, ""};
-    return {row.real("frames_per_second.steady"), row.real("frames_per_second.steady_uncertainty"),
-            row.lost_pixels(), energy, ""};
-  } catch (const explore::PointFailed& failed) {
-    return {0, 0, 0, 0, failed.what()};
-  }
+Explanation::Rate Explanation::rate_of(std::size_t number) const {
+  const Outcome& outcome = outcomes_.at(number).value();
+  if (!outcome.failure.empty()) return {0, 0, 0, 0, outcome.failure};
+  const NamedFigures& its = outcome.figures;
+  const double energy = its.real("energy.memory_mj_per_frame");
+  if (!run_.camera) return {its.real("frames_per_second.core"), 0, 0, energy, ""};
+  return {its.real("frames_per_second.steady"), its.real("frames_per_second.steady_uncertainty"),
+          its.integer("lost_pixels"), energy, ""};
 }
 
-Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
-                                                      const platform::BoardConfig& board) {
-  const explore::StoredRow& row = batch_.row_of(points_.point(number));
+Explanation::BusiestBank Explanation::busiest_bank_of(std::size_t number) const {
+  const NamedFigures& row = outcomes_.at(number).value().figures;
   BusiestBank busiest;
   std::int64_t most = -1;
-  for (const platform::BankConfig& bank : board.banks) {
+  for (const platform::BankConfig& bank : board_of(number).banks) {
     const std::string path = "banks." + bank.name;
     const std::int64_t busy = row.integer(path + ".busy_cycles");
     if (busy <= most) continue;
@@ -401,10 +467,10 @@ Explanation::BusiestBank Explanation::busiest_bank_of(std::uint64_t number,
 void Explanation::read_steps() {
   for (std::size_t i = 0; i < knobs_.possible.size(); ++i) {
     const explore::KnobStep& knob = knobs_.possible[i];
-    if (!batch_.has(points_.point(i + 1))) continue;
+    if (!outcomes_[i + 1]) continue;
     ++simulated_;
     Step step{&knob, rate_of(i + 1), {}};
-    if (step.rate.failure.empty()) step.busiest = busiest_bank_of(i + 1, knob.board);
+    if (step.rate.failure.empty()) step.busiest = busiest_bank_of(i + 1);
     steps_.push_back(std::move(step));
   }
   std::stable_sort(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) {
@@ -426,7 +492,7 @@ void Explanation::read_steps() {
 }
 
 double Explanation::busy_percent(const std::string& resource) const {
-  const explore::StoredRow& row = figures();
+  const NamedFigures& row = figures();
   const auto number = [&row](const std::string& path) { return static_cast<double>(row.integer(path)); };
   const std::size_t space = resource.find(' ');
   const std::string name = space == std::string::npos ? "" : resource.substr(space + 1);
@@ -461,7 +527,7 @@ void Explanation::compare_resources(const std::vector<double>& frame_cycles) {
   const double clock_hz = board_.fpga.clock_mhz * 1e6;
   const auto around = platform::computer_bounds(board_, accesses_, true);
   const std::string of = run_.camera ? "bound.system" : "bound.core";
-  rate_bound_ = {figures_->text(of + "_limited_by"), figures_->real(of)};
+  rate_bound_ = {figures_.text(of + "_limited_by"), figures_.real(of)};
   if (now_.loses_pixels()) {
     const platform::Bound core = platform::core_bound(board_, accesses_);
     rate_bound_ = {core.core_limited_by, core.core};
@@ -507,7 +573,7 @@ void Explanation::share_time(std::vector<double> frame_cycles) {
   double frames_share = 100;
   if (run_.camera) {
     for (const Reason& reason : kReasons) {
-      const double share = 100 * figures_->real(fmt::format("core_waits.{}", reason.why));
+      const double share = 100 * figures_.real(fmt::format("core_waits.{}", reason.why));
       frames_share -= share;
       if (share > 0) budget_.core_waits[reason.why] = share;
     }
@@ -557,7 +623,7 @@ std::string budget_text(const Explanation& explanation) {
 
 Json explanation_document(const platform::BoardConfig& board, const Explanation& explanation) {
   const Explanation::Rate& now = explanation.now();
-  const explore::StoredRow& row = explanation.figures();
+  const NamedFigures& row = explanation.figures();
   const std::string of = explanation.camera() ? "bound.system" : "bound.core";
   Json document = {
       {"schema", 1},

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -13,7 +12,6 @@
 #include "platform/figures/bounds.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/store/store.h"
-#include "sw/explore/sweep/sweep.h"
 #include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::runs {
@@ -25,6 +23,20 @@ struct Budget {
   double waits = 0;   // ports wait for banks
   // The core waits for its next start, by reason (sw/report/README.md, Time line); of the core alone empty.
   std::map<std::string, double> core_waits;
+};
+
+// The figures of a run by their names. One that is missing reads as "" and 0.
+class NamedFigures {
+ public:
+  NamedFigures() = default;
+  explicit NamedFigures(const explore::Figures& figures);
+
+  std::string text(const std::string& name) const;
+  std::int64_t integer(const std::string& name) const;
+  double real(const std::string& name) const;
+
+ private:
+  std::map<std::string, platform::KeyValue> values_;
 };
 
 // Simulates a board, and one board for each step of a knob, without pixels. Finds what limits the board, and
@@ -60,7 +72,7 @@ class Explanation {
   const platform::BoardConfig& board() const { return board_; }
   const Rate& now() const { return now_; }  // of the board itself
   // The figures of the board itself.
-  const explore::StoredRow& figures() const { return *figures_; }
+  const NamedFigures& figures() const { return figures_; }
   std::uint64_t frames() const { return explore::frames_of(run_, board_); }
   bool camera() const { return run_.camera; }
 
@@ -112,7 +124,7 @@ class Explanation {
 
   const Budget& budget() const { return budget_; }
   double percent_of_cycles(std::uint64_t cycles) const {
-    return 100 * static_cast<double>(cycles) / static_cast<double>(figures_->integer("cycles"));
+    return 100 * static_cast<double>(cycles) / static_cast<double>(figures_.integer("cycles"));
   }
   double gained_percent(const Step& step) const {
     return 100 * (step.rate.frames_per_second / now_.frames_per_second - 1);
@@ -127,8 +139,9 @@ class Explanation {
   const std::vector<platform::BlameRow>& group_blames() const { return group_blames_; }
 
  private:
-  Rate rate_of(std::uint64_t number);
-  BusiestBank busiest_bank_of(std::uint64_t number, const platform::BoardConfig& board);
+  const platform::BoardConfig& board_of(std::size_t number) const;
+  Rate rate_of(std::size_t number) const;
+  BusiestBank busiest_bank_of(std::size_t number) const;
   double busy_percent(const std::string& resource) const;
   void read_steps();
   void add_resource(const Resource& found);
@@ -139,11 +152,15 @@ class Explanation {
   const platform::Tables& tables_;
   explore::PointRun run_;
   explore::KnobSteps knobs_;
-  explore::Points points_;  // the board itself, then the steps
-  explore::Batch batch_;
+  // What the simulation of a board has given.
+  struct Outcome {
+    NamedFigures figures;
+    std::string failure;  // the reason if it has failed; else empty
+  };
+  std::vector<std::optional<Outcome>> outcomes_;  // of the board itself, then of the steps
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]
-  std::unique_ptr<explore::StoredRow> figures_;
+  NamedFigures figures_;
   Rate now_;
   BusiestBank busiest_;
   std::vector<Step> steps_;

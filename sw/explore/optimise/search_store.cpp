@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <iterator>
 #include <sstream>
 
@@ -63,16 +62,15 @@ std::string verdict_text(Verdict verdict) {
 
 SearchStore::SearchStore(const std::string& path, const Asked& asked)
     : path_(behind_links(path)), asked_(asked) {
-  std::error_code none;
-  if (std::filesystem::file_size(path_, none) == 0 || none) {
-    sqlite::Database database(path_, sqlite::Database::Access::kCreate);
+  // To write, because a process that was killed may have left a change that is to be rolled back.
+  sqlite::Database database(path_, sqlite::Database::Access::kCreate);
+  if (database.number("PRAGMA page_count") == 0) {
+    database.execute("BEGIN IMMEDIATE");
     create(database);
     database.execute(
-        "CREATE TABLE results(key TEXT PRIMARY KEY NOT NULL, value TEXT NOT NULL) WITHOUT ROWID");
+        "CREATE TABLE results(key TEXT PRIMARY KEY NOT NULL, value TEXT NOT NULL) WITHOUT ROWID; COMMIT");
     return;
   }
-  // To write, because a process that was killed may have left a change that is to be rolled back.
-  sqlite::Database database(path_, sqlite::Database::Access::kWrite);
   if (database.number("PRAGMA application_id") != kApplicationId)
     throw sqlite::DatabaseError(path + ": not a database of stereotlm optimise");
   if (const auto layout = database.number("PRAGMA user_version"); layout != kLayout)

@@ -377,25 +377,4 @@ std::uint64_t workers_with_files(std::uint64_t workers) {
   return files.size() < kOwnFiles ? 0 : files.size() - kOwnFiles;
 }
 
-bool Batch::run(const Points& points, const Evaluate& evaluate,
-                const std::function<bool(const SweepCounts& counts)>& keep_going) {
-  SweepOptions options;
-  options.store = path_;
-  row_.reset();
-  const SweepCounts counts = sweep(points, evaluate, options, keep_going);
-  return counts.done() == counts.total;
-}
-
-bool Batch::has(const Point& point) {
-  if (!row_) row_ = std::make_unique<StoredRow>(path_);
-  return row_->find(point.hash);
-}
-
-const StoredRow& Batch::row_of(const Point& point) {
-  if (!has(point)) throw std::runtime_error(fmt::format("point {} was not simulated", point.number));
-  if (row_->text("status") != "ok")
-    throw PointFailed(fmt::format("{}: {}", point.board->name, row_->text("reason")));
-  return *row_;
-}
-
 }  // namespace stereotlm::explore

@@ -9,7 +9,7 @@ import program
 from program import ProgramTest, Terminal, run, sets
 from report_data import data_of
 
-SLOW = ["sdram", *sets("image.width=160", "image.height=120")]  # stepped cycle by cycle
+SLOW = ["sdram", *sets("image.width=240", "image.height=180")]  # stepped cycle by cycle
 UNEQUAL = sets(*(f"ssram.banks.bank{number}={{words: {2**20 - number}}}" for number in range(8)))
 
 

@@ -57,10 +57,6 @@ Figures evaluate(const Point& point) {
 
 bool always(const SweepCounts& /*counts*/) { return true; }
 
-Points point_of_fpl2003() {
-  return {1, [](std::uint64_t number) { return make_point(number, platform::load_board("fpl2003"), {}); }};
-}
-
 class SweepTest : public StoreFiles {
  protected:
   SweepTest() { write_file(file("plan.yaml"), kPlan); }
@@ -302,15 +298,6 @@ TEST_F(SweepTest, RefusesAStoreThatAnotherSweepUses) {
   });
   EXPECT_TRUE(is_tried);
   expect_whole("a.db");
-}
-
-TEST(Batch, ReportsWhyAPointHasNoFigures) {
-  const Points points = point_of_fpl2003();
-  const auto fails = [](const Point& /*point*/) -> Figures { throw std::runtime_error("too large"); };
-  Batch batch;
-  ASSERT_TRUE(batch.run(points, fails, [](const SweepCounts&) { return true; }));
-  EXPECT_THROW(batch.row_of(points.point(0)), PointFailed);
-  EXPECT_EQ(test::message_of([&] { batch.row_of(points.point(0)); }), "fpl2003: too large");
 }
 
 }  // namespace
