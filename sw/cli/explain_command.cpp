@@ -13,7 +13,6 @@
 #include "platform/figures/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
-#include "sw/explore/store/store.h"
 #include "sw/files/text_forms.h"
 #include "sw/runs/explanation.h"
 #include "sw/stats/console_table.h"
@@ -222,8 +221,6 @@ int explain(const ExplainOptions& options) {
   process::Problems problems;
   const LoadedBoard loaded = options.board.load(problems);
   const auto& board = loaded.board;
-  if (const auto problem = board ? explore::bank_names_problem(*board) : std::nullopt)
-    problems.add(fmt::format("{}: {}", options.board.argument.text(), *problem));
   problems.check();
   loaded.say_clock_remark();
   const platform::Tables tables = loaded.tables();

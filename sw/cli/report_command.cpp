@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "sw/cli/command.h"
-#include "sw/explore/store/store.h"
 #include "sw/process/command.h"
 #include "sw/report/difference_tables.h"
 #include "sw/report/html_page.h"
@@ -74,12 +73,6 @@ std::optional<Json> data_of_run(const ReportOptions& options, process::Problems&
   const auto run = runs::load_recorded_run("RUN", options.inputs.texts().front(), problems);
   if (!run) return std::nullopt;
   runs::RunInput input = runs::open_again(*run, problems);
-  if (!options.quick.is_given()) {
-    check_temporary_folder(problems);
-    if (const auto problem = explore::bank_names_problem(run->board)) {
-      problems.add(fmt::format("'{}': {}; --quick simulates nothing", run->folder, *problem));
-    }
-  }
   problems.check();
   Json data = report::run_data(*run, input.tables);
   std::string text = text_of(*run);

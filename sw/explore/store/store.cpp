@@ -328,15 +328,6 @@ bool differ_in_case(const std::string& a, const std::string& b) {
   return a != b && without_case(a) == without_case(b);
 }
 
-std::optional<std::string> bank_names_problem(const platform::BoardConfig& board) {
-  for (const platform::BankConfig& one : board.banks) {
-    for (const platform::BankConfig& other : board.banks) {
-      if (differ_in_case(one.name, other.name)) return bank_names_problem(one.name, other.name);
-    }
-  }
-  return std::nullopt;
-}
-
 std::string bank_names_problem(const std::string& one, const std::string& other) {
   return fmt::format(
       "ssram.banks = {}, {}: the names differ only in case: a database could not distinguish their columns",

@@ -57,11 +57,8 @@ std::string without_case(std::string name);
 // Whether two different names become equal without_case().
 bool differ_in_case(const std::string& a, const std::string& b);
 
-// The rule that the bank names of a board break, as `key = value: rule`, if a database cannot have a column
-// for each bank; nothing if it can.
-std::optional<std::string> bank_names_problem(const platform::BoardConfig& board);
-
-// The same rule for two names that differ_in_case().
+// The rule that two names that differ_in_case() break as names of banks, as `key = value: rule`: a database
+// cannot have a column for each.
 std::string bank_names_problem(const std::string& one, const std::string& other);
 
 // Writes results of points to an SQLite file. Table `points` has one row for each point, table `blame`
