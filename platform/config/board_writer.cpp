@@ -79,7 +79,11 @@ std::vector<std::string> bank_sets(const BoardConfig& from, const BoardConfig& t
     });
     if (!is_known) sets.push_back(fmt::format("ssram.banks.{}={}", bank.name, text));
   }
-  if (sets.size() < 2) return sets;
+  const bool keeps_places =
+      from.banks.size() <= to.banks.size() &&
+      std::equal(from.banks.begin(), from.banks.end(), to.banks.begin(),
+                 [](const BankConfig& a, const BankConfig& b) { return a.name == b.name; });
+  if (keeps_places && sets.size() < 2) return sets;
   const YamlNode ssram = section_node("ssram", to);
   return {"ssram.default=" + flow_text(ssram.entries[0].value),
           "ssram.banks=" + flow_text(ssram.entries[1].value)};
@@ -126,6 +130,15 @@ std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig
     if (!has_key(from, key) || set_text(key, from) != text) sets.push_back(key.path + "=" + text);
   }
   return sets;
+}
+
+std::pair<std::string, std::vector<std::string>> sets_of_nearest_preset(const BoardConfig& board) {
+  std::pair<std::string, std::vector<std::string>> nearest;
+  for (const std::string& name : preset_names()) {
+    std::vector<std::string> sets = sets_between(load_board(name), board);
+    if (nearest.first.empty() || sets.size() < nearest.second.size()) nearest = {name, std::move(sets)};
+  }
+  return nearest;
 }
 
 }  // namespace stereotlm::platform

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -62,8 +63,8 @@ struct BoardValue {
 std::vector<BoardValue> values_of(const BoardConfig& board);
 
 // The values of `--set` that turn `from` into `to`, in this order: those of banks; pci.load=none if only
-// `from` has a load; the others as in to_yaml(). `to` has all banks of `from`, in their order, before new
-// ones. If two or more banks differ or are new, `ssram.default` and `ssram.banks` are given whole.
+// `from` has a load; the others as in to_yaml(). If two or more banks differ or are new, or if banks go or
+// change their places, `ssram.default` and `ssram.banks` are given whole.
 std::vector<std::string> sets_between(const BoardConfig& from, const BoardConfig& to);
 
 // A board file that is compiled in.
@@ -77,6 +78,9 @@ const std::vector<Preset>& presets();
 
 // Their names.
 std::vector<std::string> preset_names();
+
+// The preset of which fewest values of `--set` make the board, and these, as by sets_between().
+std::pair<std::string, std::vector<std::string>> sets_of_nearest_preset(const BoardConfig& board);
 
 // The text of a preset's file. Throws std::out_of_range for an unknown name.
 std::string_view preset_text(std::string_view name);

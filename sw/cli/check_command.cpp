@@ -66,6 +66,9 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
     document["smallest_device"] = smallest->name;
   document["pins"] = platform::pins_of(*board);
   document["values"] = values_document(*board);
+  const auto [preset, sets] = platform::sets_of_nearest_preset(*board);
+  document["preset"] = preset;
+  document["sets"] = sets;
   return document;
 }
 

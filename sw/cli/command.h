@@ -78,6 +78,7 @@ void add_diagram(Commands& commands);
 void add_diff(Commands& commands);
 void add_report(Commands& commands);
 void add_rtl(Commands& commands);
+void add_serve(Commands& commands);
 void add_worker(Commands& commands);
 
 inline constexpr std::size_t kTextColumns = 100;

@@ -137,7 +137,7 @@ Action parse_command_line(int argc, const char* const* argv) {
   Commands commands = {program, argc > 1 ? argv[1] : "", {}};
   for (const auto add : {add_run, add_check, add_boards, add_keys, add_bounds, add_explain, add_calibrate,
                          add_sweep, add_optimise, add_merge, add_allocate, add_plot, add_conflicts, add_diff,
-                         add_diagram, add_report, add_rtl, add_worker})
+                         add_diagram, add_report, add_rtl, add_serve, add_worker})
     add(commands);
   for (CLI::App* command : program.get_subcommands({})) command->group("Commands");
   check_first_argument(program, argc, argv);

@@ -14,6 +14,7 @@
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/text_forms.h"
+#include "sw/report/page_data/page_data.h"
 #include "sw/runs/explanation.h"
 #include "sw/stats/console_table.h"
 
@@ -197,6 +198,7 @@ struct ExplainOptions : Options {
   using Options::Options;
 
   void check_together(process::Problems& problems) override {
+    if (json.is_given() && page_data.is_given()) problems.add("--page-data: does not go with --json");
     if (!frames.is_given()) return;
     const bool camera = source.is_camera();
     const platform::IntegerRule rule =
@@ -215,6 +217,9 @@ struct ExplainOptions : Options {
                          fmt::format("Frames of each board; by default {}, of the whole computer {}",
                                      runs::Explanation::kCoreFrames, runs::Explanation::kComputerFrames));
   JsonOption json{this};
+  Option page_data = Option(this, "--page-data", "",
+                            "Print what the page of `report` has of these changes, as JSON: the same, with "
+                            "what each change takes");
 };
 
 int explain(const ExplainOptions& options) {
@@ -229,7 +234,8 @@ int explain(const ExplainOptions& options) {
                                 options.frames.number<std::uint64_t>().value_or(0));
   if (!explanation.simulate(loaded.simulator()))
     return interrupted("the board itself was not simulated: there is no result");
-  process::print(options.json.is_given()
+  process::print(options.page_data.is_given() ? json_text(report::knobs_data(*board, explanation))
+                 : options.json.is_given()
                      ? json_text(runs::explanation_document(*board, explanation))
                      : head_text(*board, tables, explanation) + resources_text(*board, explanation) +
                            blames_text(explanation) + changes_text(*board, explanation));

@@ -32,6 +32,8 @@ struct ReportOptions : Options {
   }
 
   void check_together(process::Problems& problems) override {
+    if (out.is_given() == json.is_given())
+      problems.add(out.is_given() ? "--json: does not go with --out" : "--out: missing: the page to write");
     const std::size_t count = inputs.texts().size();
     if (count > 2) problems.add(fmt::format("INPUT: {} given: one run or database, or two runs", count));
     if (quick.is_given() && count == 2)
@@ -43,7 +45,8 @@ struct ReportOptions : Options {
   Option inputs = Option(this, "INPUT", "...", "One run or database, or two runs",
                          {required("a folder of run --out, two of them, or a database")}, Takes::kList);
   Option out =
-      Option(this, "--out", "F.html", "The page to write", {required("the page to write"), ends_in(".html")});
+      Option(this, "--out", "F.html", "The page to write", {ends_in(".html")});
+  Option json = Option(this, "--json", "", "Print the data of the page as JSON, and write no page");
   Option quick = Option(this, "--quick", "", "Simulate nothing: no gain of the changes");
 };
 
@@ -132,7 +135,7 @@ int report(const ReportOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
   std::optional<files::OutputFile> file;
-  problems.attempt("--out ", [&] {
+  if (options.out.is_given()) problems.attempt("--out ", [&] {
     file.emplace(options.out.text(),
                  files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
   });
@@ -142,10 +145,14 @@ int report(const ReportOptions& options) {
   problems.check();
   Json whole = {{"format", 2}, {"version", process::kVersion}};
   whole.update(*data);
-  const std::string page = report::html_page(whole);
-  file->write(page);
-  file->commit();
-  process::print(fmt::format("{}: {} kB\n", options.out.text(), (page.size() + 999) / 1000));
+  if (file) {
+    const std::string page = report::html_page(whole);
+    file->write(page);
+    file->commit();
+    process::print(fmt::format("{}: {} kB\n", options.out.text(), (page.size() + 999) / 1000));
+  } else {
+    process::print(json_text(whole));
+  }
   return changes.empty() ? kDone : interrupted(changes + ", and are on the page");
 }
 

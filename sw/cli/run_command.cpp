@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 
 #include "models/binder.h"
@@ -10,7 +11,10 @@
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
 #include "sw/files/aside.h"
+#include "sw/files/text_forms.h"
 #include "sw/process/child.h"
+#include "sw/report/page_data/page_data.h"
+#include "sw/report/page_data/recording_data.h"
 #include "sw/runs/progress.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/run_results.h"
@@ -169,6 +173,11 @@ int run(const RunCommandOptions& options) {
   }
   std::optional<runs::Verification> verification;
   if (options.run.verify.is_given()) verification.emplace(input);
+  std::optional<report::RecordingData> recording;
+  if (options.run.page_data.is_given() && input.recorded_frames > 0) {
+    recording.emplace(input.board, input.camera);
+    input.record = [&recording](const auto& name, const auto& text) { recording->add(name, text); };
+  }
   const Outcome outcome = has_counts_only(input, verification.has_value())
                               ? count_cycles(input)
                               : simulate(input, verification ? &*verification : nullptr);
@@ -185,8 +194,16 @@ int run(const RunCommandOptions& options) {
       compares ? verification->compare(outcome.statistics) : std::optional(std::vector<std::string>());
   if (!differences) runs::leave_out_verify(input);
   if (input.trace) input.trace->complete();  // before the earlier result is replaced: this may fail
+  std::function<std::string(const stats::TableExtras&)> text_of;
+  if (options.run.page_data.is_given()) {
+    if (recording) recording->check(outcome.statistics);
+    text_of = [&](const stats::TableExtras& extras) {
+      return files::json_text(report::run_data(input, outcome.statistics, extras, outcome.last,
+                                               recording ? &*recording : nullptr));
+    };
+  }
   const bool is_right = runs::deliver(input, outcome.statistics, outcome.last,
-                                      differences.value_or(std::vector<std::string>()));
+                                      differences.value_or(std::vector<std::string>()), text_of);
   if (input.trace) input.trace->commit();
   if (!is_right) return kFailed;
   if (done < input.frames || !differences) return kInterrupted;

@@ -229,7 +229,7 @@ std::optional<runs::CalibrationInput> calibration_of(explore::Plan& plan, const 
 LoadedBoard BoardOptions::load(process::Problems& problems) const {
   LoadedBoard loaded;
   problems.attempt("", [&] {
-    const std::string& path = argument.text();
+    const std::string path = argument.is_given() ? argument.text() : "fpl2003";
     platform::BoardDraft draft(path,
                                sent_content(sent, "board.yaml", platform::is_board_file(path) ? path : ""));
     for (const std::string& set : sets.texts()) draft.set(set);
@@ -377,6 +377,12 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
     problems.add("--fit: does not go with --calibration, whose tables are for pictures of the board's size");
   if (pictures.fit.is_given() && pictures.synthetic.is_given())
     problems.add("--fit: does not go with --synthetic, whose scene has the board's size");
+  if (no_record.is_given() && !out.is_given() && !page_data.is_given())
+    problems.add("--no-record: goes with --out DIR");
+  for (const Option* const other : {&out, &save_frames, static_cast<const Option*>(&json)}) {
+    if (page_data.is_given() && other->is_given())
+      problems.add("--page-data: does not go with " + other->name());
+  }
   for (const auto& [name, given] :
        {std::pair("--truth", truth.file.is_given()), std::pair("--save-frames", save_frames.is_given())}) {
     if (timing_only.is_given() && given)
@@ -390,7 +396,7 @@ void RunOptions::check_together(const std::string& command, process::Problems& p
 }
 
 std::uint64_t RunOptions::recorded_frames() const {
-  if (!out.is_given() || no_record.is_given()) return 0;
+  if (!(out.is_given() || page_data.is_given()) || no_record.is_given()) return 0;
   return record.is_given() || !trace.traces().empty() ? runs::kAllFrames : runs::kRecordedFrames;
 }
 
@@ -422,6 +428,10 @@ runs::RunInput RunOptions::load() const {
     problems.attempt("", [&] {
       input.folder = std::make_unique<files::OutputFolder>(out.text(), runs::result_content(input.inputs));
     });
+  if (input.folder)
+    input.record = [folder = input.folder.get()](const auto& name, const auto& text) {
+      folder->append(name, text);
+    };
   problems.check();
   input.board = *loaded.board;
   problems.attempt("", [&] {

@@ -48,7 +48,8 @@ struct BoardOptions {
   bool changes_board() const { return sets.is_given() || calibration.is_given(); }
   // BOARD and the options as typed, as words of a command line, without --set of an allocation.
   std::vector<std::string> words_without_allocation() const;
-  // Loads the board and the calibration, and checks that they fit. Reports all problems.
+  // Loads the board and the calibration, and checks that they fit. Reports all problems. A command that needs
+  // no BOARD gets fpl2003.
   LoadedBoard load(process::Problems& problems) const;
 
   Options* of;
@@ -229,10 +230,11 @@ struct RunOptions {
       "frames (default: in the first " +
           std::to_string(runs::kRecordedFrames) + ")",
       {goes_with(out, "DIR")});
-  Option no_record = Option(more, "--no-record", "", "Record nothing: quicker for long runs without pixels",
-                            {goes_with(out, "DIR")});
+  Option no_record = Option(more, "--no-record", "", "Record nothing: quicker for long runs without pixels");
   TraceOptions trace{more};
   JsonOption json{more};
+  Option page_data = Option(more, "--page-data", "",
+                            "Print the data of the page that `report` would write of this run, as JSON");
 };
 
 }  // namespace stereotlm::cli

@@ -159,4 +159,27 @@ CommandEnd run_script(const std::string& script, const std::vector<std::string>&
       fmt::format("'{}', which draws the figures: cannot be started: {}", python, cause));
 }
 
+void become_python(
+    const std::string& module, const std::vector<std::string>& arguments, const std::string& page) {
+  const std::filesystem::path folder = installed_path(STEREOTLM_MODULE_FOLDER);
+  if (!std::filesystem::is_directory(folder / "stereotlm"))
+    throw std::runtime_error(
+        fmt::format("'{}': the Python module is not installed: the package python3-stereotlm has it",
+                    (folder / "stereotlm").string()));
+  const int descriptor = memfd_create("page", 0);  // the program inherits it
+  if (descriptor < 0) fail(errno, "memfd_create");
+  if (!write_all(descriptor, page.data(), page.size())) fail(errno, "write");
+  std::vector<std::string> words = {
+      kPython, "-E", "-s", "-B", "-c",
+      fmt::format("import sys; sys.path.insert(0, sys.argv.pop(1)); from {} import main; main()", module),
+      folder.string(), "--page", std::to_string(descriptor),
+      "--program=" + std::filesystem::read_symlink("/proc/self/exe").string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  execv(kPython, pointers.data());
+  fail(errno, kPython);
+}
+
 }  // namespace stereotlm::process

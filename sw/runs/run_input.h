@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "models/fpga/record/core_cycle.h"
@@ -33,6 +35,8 @@ struct RunInput {
   bool timing_only = false;
   std::uint64_t recorded_frames = 0;            // whose waits are written to the folder; 0: none
   bool json = false;                            // --json
+  // Gets whole lines of each file that the run records (sw/report/README.md); null: it records nothing.
+  std::function<void(const std::string& name, const std::string& text)> record;
   std::unique_ptr<trace::Trace> trace;          // null: no --trace
   std::uint64_t frames = 1;                     // frames to deliver
   std::optional<media::Truth> truth;            // ground truth of the pair that the last frame shows

@@ -146,17 +146,17 @@ void save_frame(const RunInput& input, const Result& result) {
 
 Records::Records(const RunInput& input) : input_(input) {
   if (input_.recorded_frames == 0) return;
-  input_.folder->append("rows.csv", stats::rows_csv_head(input.board));
+  input_.record("rows.csv", stats::rows_csv_head(input.board));
   if (!input.camera) return;
-  input_.folder->append("timeline.csv", stats::timeline_csv_head());
-  input_.folder->append("latency.csv", stats::latency_csv_head());
+  input_.record("timeline.csv", stats::timeline_csv_head());
+  input_.record("latency.csv", stats::latency_csv_head());
 }
 
 void Records::add(Simulation& simulation) {
   for (const fpga::FrameConflicts& frame : simulation.take_conflicts()) {
     if (input_.trace) input_.trace->frame(platform::frame_runs(frame));
     if (input_.recorded_frames > 0)
-      input_.folder->append("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
+      input_.record("rows.csv", stats::rows_csv(input_.board, frame.number, frame));
   }
   if (!input_.camera) return;
   platform::TimelineRecords records = simulation.take_timeline();
@@ -168,14 +168,14 @@ void Records::add(Simulation& simulation) {
   const auto is_later = [this](const platform::TimelineEvent& event) { return event.end_ps > end_ps_; };
   records.events.erase(std::find_if(records.events.begin(), records.events.end(), is_later),
                        records.events.end());
-  input_.folder->append("timeline.csv", stats::timeline_csv(records.events));
-  input_.folder->append("latency.csv", stats::latency_csv(records.latencies));
+  input_.record("timeline.csv", stats::timeline_csv(records.events));
+  input_.record("latency.csv", stats::latency_csv(records.latencies));
 }
 
 void Records::finish(Simulation& simulation) {
   add(simulation);
   if (input_.recorded_frames > 0)
-    input_.folder->append("conflicts.csv", stats::conflicts_csv(input_.board, *simulation.conflicts()));
+    input_.record("conflicts.csv", stats::conflicts_csv(input_.board, *simulation.conflicts()));
 }
 
 void leave_out_truth_of_another_pair(RunInput& input, std::uint64_t frames_done) {
@@ -199,7 +199,8 @@ void say_lost_pixels(const platform::Statistics& statistics, const std::string& 
 }
 
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
-             const std::vector<std::string>& differences) {
+             const std::vector<std::string>& differences,
+             const std::function<std::string(const stats::TableExtras&)>& text_of) {
   std::optional<stats::Accuracy> accuracy;
   if (input.truth) accuracy = stats::accuracy(last.disparity, *input.truth);
   if (input.folder) write_files(input, statistics, last, accuracy, differences);
@@ -207,8 +208,9 @@ bool deliver(RunInput& input, const platform::Statistics& statistics, const Resu
   for (const std::string& identity : statistics.failed)
     process::say("error", "identity does not hold: " + identity);
   const stats::TableExtras extras = extras_of(input, statistics, last, accuracy);
-  process::print(input.json ? files::json_text(stats::run_document(statistics, extras))
-                            : stats::console_table(statistics, input.board, extras));
+  process::print(text_of      ? text_of(extras)
+                 : input.json ? files::json_text(stats::run_document(statistics, extras))
+                              : stats::console_table(statistics, input.board, extras));
   say_lost_pixels(statistics);
   constexpr double kFewAnswers = 50;  // percent: exchanged pictures give no more
   if (!input.calibration && extras.answered_percent.value_or(100) < kFewAnswers)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "sw/files/output_folder.h"
 #include "sw/runs/run_input.h"
 #include "sw/runs/simulation/simulation.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::runs {
 
@@ -61,11 +63,13 @@ void leave_out_verify(RunInput& input);
 void say_lost_pixels(const platform::Statistics& statistics, const std::string& subject = "");
 
 // Writes the result files, sends the disparities to a client, and prints the table, or with --json the
-// document. `last`: the result of the last frame. `differences`: found by --verify. Prints the differences
+// document, or what `text_of` returns. `last`: the result of the last frame. `differences`: found by
+// --verify. Prints the differences
 // and the identities that do not hold, and lists them as `failed` in stats.json. Returns true if there are no
 // differences and all identities hold. Throws std::runtime_error if the files cannot be written; an earlier
 // result is then unchanged.
 bool deliver(RunInput& input, const platform::Statistics& statistics, const Result& last,
-             const std::vector<std::string>& differences = {});
+             const std::vector<std::string>& differences = {},
+             const std::function<std::string(const stats::TableExtras&)>& text_of = nullptr);
 
 }  // namespace stereotlm::runs

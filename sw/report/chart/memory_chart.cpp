@@ -408,6 +408,7 @@ class Chart {
   };
   struct Held {  // a buffer in a bank
     std::string label;
+    std::string key;   // in a board file: allocation.left_image[0]
     std::string port;  // that accesses it
     std::uint64_t words = 0;
     double y = 0;  // of its line, below the top of the bank
@@ -458,7 +459,7 @@ class Chart {
         const bool is_joint = board_.fpga.joint_tables && buffer.buffer == platform::Buffer::kLeftLut;
         for (const fpga::PortGroup& port : fpga::kPortGroups) {
           if (port.buffer != std::string(platform::name_of(buffer.buffer))) continue;
-          bank.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), port.name,
+          bank.buffers.push_back({is_joint ? "left_lut, right_lut" : buffer.label(), buffer.path(), port.name,
                                   platform::buffer_words(buffer, board_.image)});
         }
       }
@@ -610,7 +611,9 @@ class Chart {
     for (const Held& buffer : bank.buffers) {
       part.width = bar.width * static_cast<double>(buffer.words) / static_cast<double>(all_words);
       blocks_ += rect_element(part, 0, paint("fill", "used")) + frame_element(part, 0, "memory", 1);
+      blocks_ += fmt::format("<g class=\"buffer\" data-key=\"{}\">\n", xml_text(buffer.key));
       draw_bank_line(bank.box, bank.box.y + buffer.y, buffer.label, kPlain, grouped(buffer.words));
+      blocks_ += "</g>\n";
       part.x = part.right();
     }
     if (bank.buffers.empty()) blocks_ += text_element("no buffer", kNote, bar.x, bar.y + 8, bar.width);

@@ -8,8 +8,11 @@
 #include "sw/runs/explanation.h"
 #include "sw/runs/recorded_run.h"
 #include "sw/runs/run_input.h"
+#include "sw/stats/console_table.h"
 
 namespace stereotlm::report {
+
+class RecordingData;
 
 // Parts of a page's data (sw/report/page/README.md).
 
@@ -18,6 +21,11 @@ std::string picture_url(const kernels::GrayImage& picture);
 
 // A recorded run: what its folder holds, and what follows from its board without a simulation.
 nlohmann::ordered_json run_data(const runs::RecordedRun& run, const platform::Tables& tables);
+
+// A run that has just ended, without `folder` and `command`. `recording`: what it has recorded; null: nothing.
+nlohmann::ordered_json run_data(const runs::RunInput& input, const platform::Statistics& statistics,
+                                const stats::TableExtras& extras, const runs::Result& last,
+                                const RecordingData* recording);
 
 // Adds what the run has recorded: `recording`, and `pictures.left`, the left picture of the last frame as the
 // matcher sees it. Returns false, and adds nothing, if its folder has no such files. Throws

@@ -533,9 +533,13 @@ bool RecordingData::add_folder(const platform::Statistics& statistics) {
     std::ifstream file(folder_ / name, std::ios::binary);
     for (std::string line; std::getline(file, line);) add(name, file.eof() ? line : line + '\n');
   }
+  check(statistics);
+  return true;
+}
+
+void RecordingData::check(const platform::Statistics& statistics) const {
   conflicts_->check(statistics);
   if (timeline_) timeline_->check(statistics, conflicts_->may_be_part());
-  return true;
 }
 
 std::uint64_t RecordingData::last_camera_frame() const { return timeline_->last_camera_frame(); }

@@ -34,6 +34,8 @@ class RecordingData {
   // Adds the files of the folder, and checks their identities with the figures of the run, as far as its
   // frames are recorded. Throws as add() does. Returns false, and adds nothing, if they are not there.
   bool add_folder(const platform::Statistics& statistics);
+  // Checks those identities.
+  void check(const platform::Statistics& statistics) const;
 
   nlohmann::ordered_json json() const;
 

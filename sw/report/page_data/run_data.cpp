@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <set>
@@ -24,6 +25,7 @@
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/report/page_data/recording_data.h"
+#include "sw/media/load.h"
 #include "sw/runs/explanation.h"
 #include "sw/stats/stats_json.h"
 
@@ -116,13 +118,13 @@ Json area_data(const BoardConfig& board) {
   return data;
 }
 
-// The identities among the figures of the run, which was checked when it was loaded.
-Json identities_of(const runs::RecordedRun& run) {
+// The identities among the figures of a run that keeps them.
+Json identities_of(const BoardConfig& board, const platform::Statistics& statistics) {
   std::vector<platform::Identity> identities;
   platform::Audit audit(&identities);
-  platform::audit_core(run.statistics, audit);
-  platform::audit_accesses(run.board, run.statistics, audit);
-  if (run.statistics.computer) platform::audit_computer(*run.statistics.computer, audit);
+  platform::audit_core(statistics, audit);
+  platform::audit_accesses(board, statistics, audit);
+  if (statistics.computer) platform::audit_computer(*statistics.computer, audit);
   Json all = Json::array();
   for (const platform::Identity& each : identities)
     all.push_back({each.what, each.left, each.as, each.right});
@@ -165,6 +167,37 @@ void add_prices(const BoardConfig& board, const runs::Explanation::BusiestBank& 
   data["clock_mhz"] = board.fpga.clock_mhz;
 }
 
+// What follows from a board and the figures of its run.
+Json figures_data(const BoardConfig& board, const platform::Tables& tables,
+                  const platform::Statistics& statistics, Json stats) {
+  return {{"stats", std::move(stats)},
+          {"settings", settings_of(board)},
+          {"banks", banks_of(board)},
+          {"bounds", bounds_of(board, tables, statistics)},
+          {"area", area_data(board)},
+          {"pins", platform::pins_of(board)},
+          {"banks_used", banks_used(board).size()},
+          {"identities", identities_of(board, statistics)},
+          {"memory_chart", memory_chart_svg({board, statistics.computer.has_value(), &statistics})}};
+}
+
+// The left picture of a frame as the matcher sees it.
+kernels::GrayImage left_picture(const runs::RunInput& input, std::uint64_t frame) {
+  kernels::GrayImage left = input.pairs->pair(frame).left;
+  return input.tables.left ? kernels::rectify(left, *input.tables.left) : left;
+}
+
+// The nearest disparity of each pixel; where it is unknown or above 254, that of no answer.
+kernels::GrayImage truth_picture(const media::Truth& truth) {
+  kernels::GrayImage picture(truth.width, truth.height);
+  std::transform(truth.levels.begin(), truth.levels.end(), picture.pixels.begin(), [&truth](float level) {
+    const double disparity = std::round(level / truth.scale);
+    return level > 0 && disparity < kernels::kInvalidDisparity ? static_cast<std::uint8_t>(disparity)
+                                                               : kernels::kInvalidDisparity;
+  });
+  return picture;
+}
+
 }  // namespace
 
 std::string picture_url(const kernels::GrayImage& picture) {
@@ -173,27 +206,33 @@ std::string picture_url(const kernels::GrayImage& picture) {
 }
 
 Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
-  const BoardConfig& board = run.board;
   const auto read = [&run](const char* name) {
     return files::read_whole_file(std::filesystem::path(run.folder) / name);
   };
-  Json data = {
-      {"folder", run.folder},
-      {"command", command_of(run)},
-      {"stats", Json::parse(run.stats_json)},
-      {"config_yaml", read("config.yaml")},
-      {"settings", settings_of(board)},
-      {"banks", banks_of(board)},
-      {"bounds", bounds_of(board, tables, run.statistics)},
-      {"area", area_data(board)},
-      {"pins", platform::pins_of(board)},
-      {"banks_used", banks_used(board).size()},
-      {"identities", identities_of(run)},
-      {"memory_chart", memory_chart_svg({board, run.statistics.computer.has_value(), &run.statistics})}};
+  Json data = {{"folder", run.folder}, {"command", command_of(run)}};
+  data.update(figures_data(run.board, tables, run.statistics, Json::parse(run.stats_json)));
+  data["config_yaml"] = read("config.yaml");
   if (!run.options.timing_only) {
     data["pictures"] = {{"disparity", png_url(read("disparity.png"))},
-                        {"disparities", board.matcher.disparities}};
+                        {"disparities", run.board.matcher.disparities}};
   }
+  return data;
+}
+
+Json run_data(const runs::RunInput& input, const platform::Statistics& statistics,
+              const stats::TableExtras& extras, const runs::Result& last, const RecordingData* recording) {
+  Json data =
+      figures_data(input.board, input.tables, statistics, stats::run_document(statistics, extras));
+  data["config_yaml"] = platform::to_yaml(input.board);
+  if (recording != nullptr) data["recording"] = recording->json();
+  if (input.timing_only) return data;
+  data["pictures"] = {{"disparity", picture_url(last.disparity)},
+                      {"disparities", input.board.matcher.disparities},
+                      {"left", picture_url(left_picture(input, last.number))}};
+  const std::optional<media::Truth> truth = input.truth         ? input.truth
+                                            : input.calibration ? std::nullopt
+                                                                : input.pairs->truth(last.number);
+  if (truth) data["pictures"]["truth"] = picture_url(truth_picture(*truth));
   return data;
 }
 
@@ -203,9 +242,7 @@ bool add_recording(const runs::RecordedRun& run, runs::RunInput& input, Json& da
   data["recording"] = recording.json();
   if (run.options.timing_only) return true;
   const std::uint64_t last = input.camera ? recording.last_camera_frame() : run.options.frames - 1;
-  kernels::GrayImage left = input.pairs->pair(last).left;
-  if (input.tables.left) left = kernels::rectify(left, *input.tables.left);
-  data["pictures"]["left"] = picture_url(left);
+  data["pictures"]["left"] = picture_url(left_picture(input, last));
   return true;
 }
 

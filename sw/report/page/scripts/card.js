@@ -82,7 +82,7 @@ export function addChart(page, {id, title, note, wide, body, foot, draw, numbers
       width = now;
       redraw();
     }).observe(host);
-    whenThemeChanges(redraw);
+    whenThemeChanges(host, redraw);
   }
   return {element, redraw};
 }

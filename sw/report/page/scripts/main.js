@@ -1,6 +1,7 @@
 // Shows the data of the page.
 import {h} from './dom.js';
 import {showDatabase} from './page_database.js';
+import {showLive} from './page_live.js';
 import {showRun} from './page_run.js';
 import {showTwoRuns} from './page_two.js';
 import {startTooltips} from './tooltip.js';
@@ -12,7 +13,8 @@ const data =
     await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'))).json();
 const page = document.getElementById('page');
 startTooltips();
-({run: showRun, two_runs: showTwoRuns, database: showDatabase})[data.kind](page, data);
-page.append(
-    h('footer', {class: 'foot'},
-      `Written by stereotlm ${data.version}. The page is one file and needs no network.`));
+({run: showRun, two_runs: showTwoRuns, database: showDatabase, live: showLive})[data.kind](page, data);
+page.append(h(
+    'footer', {class: 'foot'},
+    data.kind === 'live' ? `stereotlm ${data.version}. Every figure is that of a run, which the command repeats.` :
+                           `Written by stereotlm ${data.version}. The page is one file and needs no network.`));

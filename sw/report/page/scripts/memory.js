@@ -17,7 +17,7 @@ const parsedSvg = text =>
 const nameOf = id => id.slice(id.indexOf('-') + 1);
 
 // The links of a drawing: {name, from, to, rate, peak, element}.
-const linksOf = svg => [...svg.querySelectorAll('.edge')].map(element => {
+export const linksOf = svg => [...svg.querySelectorAll('.edge')].map(element => {
   const [from, to] = [nameOf(element.dataset.from), nameOf(element.dataset.to)];
   const {mbps, peak} = element.dataset;
   return {name: `${from} – ${to}`, from, to, rate: Number(mbps), peak: Number(peak), element};
@@ -37,9 +37,12 @@ function useInPage(svg, links, moreLines = () => []) {
   svg.removeAttribute('width');
   svg.removeAttribute('height');
   svg.style.cssText = `min-width:${width}px;max-width:${kMostEnlarged * width}px`;
-  const useTheme = () => svg.setAttribute('class', `memory-chart ${isDark() ? 'dark' : 'light'}`);
+  const useTheme = () => {
+    svg.classList.toggle('dark', isDark());
+    svg.classList.toggle('light', !isDark());
+  };
   useTheme();
-  whenThemeChanges(useTheme);
+  whenThemeChanges(svg, useTheme);
 }
 
 // Where the drawing is wider than the page, begins with its highest block: there may be nothing on its left.
@@ -49,8 +52,9 @@ function openAtHighest(body, svg) {
   body.scrollLeft += highest.left - body.getBoundingClientRect().left - kMargin;
 }
 
-// The chart of a run, or those of two at the same place, one shown at a time.
-export function addMemory(page, runs) {
+// The chart of a run, or those of two at the same place, one shown at a time. `moreLines`: for the tooltips of
+// the links of one run.
+export function addMemory(page, runs, moreLines = () => []) {
   const svgs = runs.map(run => parsedSvg(run.memory_chart));
   const links = svgs.map(linksOf);
   const ratesOf = ({name}) => links.map(some => some.find(link => link.name === name)?.rate);
@@ -62,7 +66,7 @@ export function addMemory(page, runs) {
                               `B − A: ${signed(inB - inA, rate => fixed(rate, 1))} MB/s`
     ];
   };
-  svgs.forEach((svg, i) => useInPage(svg, links[i], runs.length > 1 ? differenceOf : () => []));
+  svgs.forEach((svg, i) => useInPage(svg, links[i], runs.length > 1 ? differenceOf : moreLines));
   const body = h('div', {class: 'memory'}, svgs);
   const show = number => {
     svgs.forEach((svg, i) => svg.toggleAttribute('hidden', i !== Number(number)));

@@ -90,7 +90,8 @@ function addTable(page, points, first, choose) {
   });
 }
 
-export function showDatabase(page, {database}) {
+// open(yaml): opens the board of a point; null: it cannot be opened.
+export function showDatabase(page, {database}, open = null) {
   const {boards} = database;
   const points = new Points(database);
   const hasNumbers = name => points.has(name) && points.column(name).some(each => typeof each === 'number');
@@ -161,8 +162,10 @@ export function showDatabase(page, {database}) {
     points.chosen = row;
     scatter.redraw();
     const figures = points.allNames.map(name => [name, points.textWithLoss(name, row)]);
+    const yaml = boards.points[row].map(line => boards.lines[line]).join('');
     board.replaceChildren(
-        textBox(boards.points[row].map(line => boards.lines[line]).join(''), `point_${row}.yaml`),
+        ...open ? [button('Open this board', () => open(yaml), {id: 'open-point'})] : [],
+        textBox(yaml, `point_${row}.yaml`),
         folded('All figures', htmlTable(['column', 'value'], figures, 500)));
     boardChart.element.querySelector('h2').textContent = `Board of the point: ${keysOf(row)}`;
     boardChart.element.scrollIntoView({block: 'nearest'});

@@ -13,7 +13,7 @@ import {addLatency, addTimeLine} from './time.js';
 import {addBlame, addRows} from './waits.js';
 
 // The waits over the picture and its disparities, or over grey where the run has computed no pixels.
-function addPictureOf(page, run) {
+export function addPictureOf(page, run) {
   const layers = tilesOf(run);
   if (!run.pictures && layers.length === 0) return;
   const {left, disparity, disparities} = run.pictures ?? {};
@@ -93,6 +93,13 @@ export function showRun(page, {run: all}) {
   addAnswers(page, answersOf(run));
 
   addMemory(addGroup(page, 'The board and its traffic'), [run]);
+  addCards(page, all);
+}
+
+// All charts of a run but the memory chart.
+export function addCards(page, all) {
+  const run = withFoldedLanes(all);
+  const {stats} = run;
   const limits = addGroup(page, 'What limits');
   addBounds(limits, run);
   addRoofline(limits, run);
@@ -110,7 +117,7 @@ export function showRun(page, {run: all}) {
     addLatency(computer, run);
   }
   const change = addGroup(page, 'What to change, and what it costs');
-  addKnobs(change, run);
+  if (run.knobs || !run.isLive) addKnobs(change, run);
   addArea(change, run);
 
   const trust = addGroup(page, 'The figures');

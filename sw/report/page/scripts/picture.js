@@ -48,7 +48,8 @@ function overlayOf({values, columns, rows}) {
 // pictures: one or two of {url, disparities}, or of {width, height} without picture; only a picture of
 // disparities has `disparities`. names: of the pictures. To the right of the slider the second picture covers
 // the first. layers: maps as those of tilesOf(), summed over `frames` frames; the chosen one is drawn on top.
-export function addPicture(page, {title, note, pictures, layers, frames, names}) {
+// `id`: of the chart, where a page has several.
+export function addPicture(page, {id = 'picture', title, note, pictures, layers, frames, names}) {
   const overlays = layers.map(overlayOf);
   const stack = h('div', {
     class: 'picture hovers',
@@ -61,7 +62,7 @@ export function addPicture(page, {title, note, pictures, layers, frames, names})
     const value = parseInt(stack.style.getPropertyValue(`--${name}`), 10);
     return h(
         'label', null, `${label} `,
-        h('input', {type: 'range', min: 0, max: 100, value, id: `picture-${name}`, input}));
+        h('input', {type: 'range', min: 0, max: 100, value, id: `${id}-${name}`, input}));
   };
   let layer = null;
   const strongest = h('span', {class: 'note'});
@@ -73,7 +74,7 @@ export function addPicture(page, {title, note, pictures, layers, frames, names})
                                 layer.height} pixels, over ${count(frames, 'frame')}`;
   };
   addChart(page, {
-    id: 'picture',
+    id,
     title,
     note,
     body: [
@@ -83,7 +84,7 @@ export function addPicture(page, {title, note, pictures, layers, frames, names})
               [
                 slider('overlay', 'overlay strength'),
                 h('label', null, 'shown ',
-                  choice('picture-layer', layers.map((each, i) => [i, each.name]), 0, choose)),
+                  choice(`${id}-layer`, layers.map((each, i) => [i, each.name]), 0, choose)),
                 strongest
               ]),
       stack

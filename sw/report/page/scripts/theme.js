@@ -3,16 +3,19 @@
 import {choice, h} from './dom.js';
 
 const kDark = matchMedia('(prefers-color-scheme: dark)');
-const themeListeners = new Set();
 let themeChosen = 'auto';
 let themePrints = false;
 
 export const isDark = () => !themePrints && (themeChosen === 'auto' ? kDark.matches : themeChosen === 'dark');
-export const whenThemeChanges = listener => themeListeners.add(listener);
+// Calls the listener while the element is in the page.
+export function whenThemeChanges(element, listener) {
+  element.classList.add('themed');
+  element.addEventListener('themechange', listener);
+}
 
 function applyTheme() {
   document.documentElement.dataset.theme = isDark() ? 'dark' : 'light';
-  for (const listener of themeListeners) listener();
+  for (const element of document.querySelectorAll('.themed')) element.dispatchEvent(new Event('themechange'));
 }
 
 export function themeSwitch() {

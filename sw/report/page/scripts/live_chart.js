@@ -1,0 +1,168 @@
+// The memory chart of the live page: its buffers are dragged into other banks, or carried there by keys.
+import {h, s} from './dom.js';
+import {bankText, fixed} from './format.js';
+import {addMemory, linksOf} from './memory.js';
+import {bankNames, newBankName} from './live_state.js';
+import {hideTooltip, mark} from './tooltip.js';
+
+const kDrags = 4;            // pixels that the pointer moves before a buffer is dragged
+const kLeastChange = 0.05;   // MB/s
+const kMostChanges = 6;      // that are named
+const kNewBank = '#new';
+
+const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
+const bankOf = element => element?.closest?.('.block[id^="bank-"]')?.id.slice('bank-'.length);
+
+// The links whose rates differ: [[name, before, now], ..].
+function changedLinks(before, now) {
+  if (!before) return [];
+  const [old, its] = [before, now].map(
+      svg => new Map(linksOf(svg).filter(({element}) => element.dataset.mbps).map(({name, rate}) => [name, rate])));
+  return [...new Set([...old.keys(), ...its.keys()])]
+      .map(name => [name, old.get(name) ?? 0, its.get(name) ?? 0])
+      .filter(([, a, b]) => Math.abs(b - a) >= kLeastChange);
+}
+
+// place(buffer, bank): shows the board with the buffer in that bank, without keeping it; null: the board as it
+// is. drop(buffer, bank, isNew): keeps it. Returns {show, element}.
+export function makeChart({place, drop}) {
+  const status = h('p', {class: 'note', id: 'chart-status', 'aria-live': 'polite'});
+  const target = h('div', {class: 'new-bank', id: 'new-bank'}, 'Drop a buffer here: into a new bank');
+  const group = h('div');
+  const element = h('div', {class: 'live-chart'}, group, target, status);
+  const ghost = h('div', {class: 'ghost', hidden: true});
+  document.body.append(ghost);
+  const kIdle = 'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
+  let run = null;
+  let baseline = null;  // the drawing with which links are compared
+  let held = null;      // {key, label, from, bank, x, y, isDragged, byKeys}
+  let kept = null;      // the key of the buffer that had the focus
+  let waiting = null;   // what show() was given meanwhile
+
+  const nameOf = bank => bank === kNewBank ? `a new bank, ${newBankName(run.settings)}` : bankText(bank);
+  const blocks = () => [...group.querySelectorAll('.block[id^="bank-"]')];
+  function over(bank) {
+    if (bank === held.bank) return;
+    held.bank = bank;
+    for (const block of blocks()) block.classList.toggle('over', bankOf(block) === bank);
+    target.classList.toggle('over', bank === kNewBank);
+    status.textContent = bank ? `${held.label}: ${nameOf(bank)}` : `${held.label}: nowhere`;
+    const isElsewhere = bank && bank !== held.from;
+    const name = bank === kNewBank ? newBankName(run.settings) : bank;
+    place(...isElsewhere ? [held.key, name, bank === kNewBank] : [null]);
+  }
+  function end(isDropped) {
+    const {key, from, bank, label} = held;
+    held = null;
+    ghost.hidden = true;
+    document.body.classList.remove('dragging');
+    for (const block of blocks()) block.classList.remove('over');
+    target.classList.remove('over');
+    status.textContent = kIdle;
+    const moves = isDropped && bank && bank !== from;
+    if (moves) status.textContent = `${label} is in ${nameOf(bank)}.`;
+    kept = key;
+    if (moves)
+      drop(key, bank === kNewBank ? newBankName(run.settings) : bank, bank === kNewBank);
+    else
+      place(null);
+    if (waiting) show(...waiting);
+  }
+
+  group.addEventListener('pointerdown', event => {
+    const buffer = event.target.closest('.buffer');
+    if (!buffer || event.button !== 0 || !run) return;
+    event.preventDefault();
+    buffer.focus({preventScroll: true});
+    const from = bankOf(buffer);
+    held = {key: buffer.dataset.key, label: labelOf(buffer), from, bank: from, x: event.clientX, y: event.clientY};
+  });
+  addEventListener('pointermove', event => {
+    if (!held || held.byKeys) return;
+    if (!held.isDragged && Math.hypot(event.clientX - held.x, event.clientY - held.y) < kDrags) return;
+    held.isDragged = true;
+    document.body.classList.add('dragging');
+    hideTooltip();
+    ghost.hidden = false;
+    ghost.textContent = held.label;
+    ghost.style.left = `${event.clientX + 10}px`;
+    ghost.style.top = `${event.clientY + 8}px`;
+    const below = document.elementFromPoint(event.clientX, event.clientY);
+    over(below?.closest('#new-bank') ? kNewBank : bankOf(below));
+  });
+  addEventListener('pointerup', () => held && !held.byKeys && end(held.isDragged));
+  addEventListener('pointercancel', () => held && end(false));
+  addEventListener('blur', () => held?.isDragged && end(false));
+  addEventListener('keydown', event => {
+    if (held && event.key === 'Escape') end(false);
+  });
+  group.addEventListener('keydown', event => {
+    const buffer = event.target.closest?.('.buffer');
+    if (!buffer || !run) return;
+    const take = () => {
+      event.preventDefault();
+      event.stopPropagation();
+    };
+    if (event.key === 'Enter' || event.key === ' ') {
+      take();
+      if (held) return end(true);
+      const from = bankOf(buffer);
+      held = {key: buffer.dataset.key, label: labelOf(buffer), from, bank: from, byKeys: true};
+      status.textContent = `${held.label} is held: choose a bank with the arrows, then Enter. Escape: leave it.`;
+    } else if (held && event.key.startsWith('Arrow')) {
+      take();
+      const banks = [...bankNames(run.settings), kNewBank];
+      const step = event.key === 'ArrowDown' || event.key === 'ArrowRight' ? 1 : -1;
+      over(banks[(banks.indexOf(held.bank) + step + banks.length) % banks.length]);
+    }
+  }, true);
+  group.addEventListener('focusout', () => held?.byKeys && setTimeout(() => {
+    if (held?.byKeys && !group.contains(document.activeElement)) end(false);
+  }));
+
+  function listChanges(links) {
+    if (links.length === 0) return;
+    const texts = links.slice(0, kMostChanges).map(([name, a, b]) => `${name} ${fixed(a, 1)} → ${fixed(b, 1)}`);
+    status.textContent = `Links that change, MB/s: ${texts.join('; ')}${
+        links.length > kMostChanges ? `; and ${links.length - kMostChanges} more` : ''}.`;
+  }
+
+  // Draws the run. While a buffer is held the drawing stays as it is, and only the changed links are named.
+  // `with_`: the run with which links are compared; null: none. `name`: of that.
+  function show(its, with_, name) {
+    const parse = any => any && new DOMParser().parseFromString(any.memory_chart, 'image/svg+xml').documentElement;
+    if (held) {
+      waiting = [its, with_, name];
+      return listChanges(changedLinks(parse(run), parse(its)));
+    }
+    waiting = null;
+    run = its;
+    baseline = parse(with_);
+    const focused = document.activeElement?.closest?.('.buffer')?.dataset.key ?? kept;
+    const hadFocus = group.contains(document.activeElement) || kept !== null;
+    const left = group.querySelector('.memory')?.scrollLeft;
+    group.style.minHeight = `${group.offsetHeight}px`;
+    group.replaceChildren();
+    const changes = changedLinks(baseline, parse(run));
+    const before = new Map(changes.map(([link, a]) => [link, a]));
+    addMemory(group, [run], link => before.has(link.name) ?
+        [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
+    const svg = group.querySelector('svg.memory-chart');
+    for (const link of linksOf(svg)) link.element.classList.toggle('changed', before.has(link.name));
+    for (const buffer of svg.querySelectorAll('.buffer')) {
+      const box = buffer.getBBox();
+      buffer.prepend(s('rect', {
+        x: box.x - 4, y: box.y - 1, width: box.width + 8, height: box.height + 2, rx: 3, class: 'handle'
+      }));
+      mark(buffer, [labelOf(buffer), bankText(bankOf(buffer)), 'drag it, or press Enter, to move it']);
+      buffer.setAttribute('role', 'button');
+    }
+    if (left !== undefined) group.querySelector('.memory').scrollLeft = left;
+    group.style.minHeight = '';
+    if (hadFocus && focused) group.querySelector(`.buffer[data-key="${CSS.escape(focused)}"]`)?.focus({preventScroll: true});
+    kept = null;
+    listChanges(changes);
+  }
+  status.textContent = kIdle;
+  return {show, element};
+}

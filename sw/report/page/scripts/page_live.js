@@ -1,0 +1,376 @@
+// The live page: a board that is changed in the browser, and what each change gives.
+import {addChart, addHead, htmlTable} from './card.js';
+import {button, choice, commandLine, controls, download, fileName, folded, h, note} from './dom.js';
+import {againstBound, headlineOf, lostPixels, rateOf, waitsOf, waitText} from './findings.js';
+import {count, fixed, gainText, lossText, percent, rate, rateWith, shortened, signed, whole} from './format.js';
+import {withFoldedLanes} from './lanes.js';
+import {makeChart} from './live_chart.js';
+import {makeKeys} from './live_keys.js';
+import {ask, askLong, boardFiles, boardOfFile, inTurn, Refused} from './live_server.js';
+import {addressOf, boardOf, commandOf, History, moveOf, splitSet, withSets} from './live_state.js';
+import {makePictures, makeSweep} from './live_tabs.js';
+import {showDatabase} from './page_database.js';
+import {addCards} from './page_run.js';
+
+const kQuiet = 150;  // ms without a change, after which the charts below follow
+const kViews = [['preloaded', 'the core alone'], ['camera', 'the whole computer']];
+
+// [name, source of the run, number of a run, text of a number, what to say beside it]
+const boundNote = run => againstBound(rateOf(run), rateOf(run).limit, rateOf(run).by);
+const kFigures = [
+  ['core frames/s', 'preloaded', run => run.stats.frames_per_second.core, rate, boundNote],
+  [
+    'computer frames/s', 'camera', run => rateOf(run).now,
+    (number, run) => rateWith(number, run?.stats.frames_per_second.steady_uncertainty),
+    run => [rateOf(run).kind + lossText(lostPixels(run)), exactText(run), boundNote(run)].filter(Boolean).join('; ')
+  ],
+  [
+    'slices %', 'preloaded', run => run.area.slices_percent, number => fixed(number, 2),
+    run => `${whole(run.area.slices)} slices, ${count(run.area.block_rams, 'block RAM')}, ${
+        count(run.area.multipliers, 'multiplier')} of the ${run.area.device.name}${run.area.fits ? '' : ': does not fit'}`
+  ],
+  ['pins', 'preloaded', run => run.pins, whole, run => `${run.banks_used} of ${count(run.banks.length, 'bank')} used`],
+  [
+    'mJ a frame', 'preloaded', run => run.stats.energy.memory_mj_per_frame, number => fixed(number, 2),
+    run => `the memories alone, ${fixed(run.stats.energy.megabytes_per_frame, 1)} MB a frame`
+  ],
+  [
+    'waits %', 'preloaded', run => 100 * (waitsOf(run)[0]?.share ?? 0), number => fixed(number, 2),
+    run => waitsOf(run).length ? waitText(waitsOf(run)[0]) : 'no port waits'
+  ],
+];
+const exactText = ({stats: {frames_per_second: rates}}) => rates.exact !== undefined &&
+    `exactly ${rates.exact_delivered_frames} in ${rates.exact_camera_frames} camera frames`;
+
+// All numbers of stats.json, of A and now.
+function differenceTable(a, now) {
+  const flat = (value, path = '') => Object.entries(value).flatMap(
+      ([key, its]) => its !== null && typeof its === 'object' ? flat(its, `${path}${its.name ?? key}.`) :
+          typeof its === 'number' ? [[path + key, its]] : []);
+  const before = new Map(flat(a.stats));
+  const rows = flat(now.stats).filter(([path, its]) => before.has(path) && before.get(path) !== its)
+                   .map(([path, its]) => [path, before.get(path), its, its - before.get(path)]);
+  return [['figure', 'A', 'now', 'difference'], rows];
+}
+
+// The text of this page with other data, as a file that needs no server.
+async function reportOf(data) {
+  const stream = new Blob([JSON.stringify(data)]).stream().pipeThrough(new CompressionStream('deflate'));
+  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const letters = [];
+  for (let at = 0; at < bytes.length; at += 0x8000)
+    letters.push(String.fromCharCode(...bytes.subarray(at, at + 0x8000)));
+  const style = document.querySelector('style').textContent;
+  const script = document.querySelector('script[type=module]').textContent;
+  return `<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n` +
+      `<meta name="generator" content="stereotlm report">\n` +
+      `<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>stereotlm report</title>\n` +
+      `<link rel="icon" href="data:,">\n<style>\n${style}</style>\n</head>\n<body>\n<main id="page"></main>\n` +
+      `<script type="text/plain" id="data">${btoa(letters.join(''))}</script>\n` +
+      `<script type="module">\n${script}</script>\n</body>\n</html>\n`;
+}
+
+export function showLive(page, {live, database, version}) {
+  const frames = {preloaded: live.core_frames, camera: live.computer_frames};
+  const first = boardOf(location.hash) ?? {...live, sets: live.sets.map(splitSet)};
+  const history = new History(
+      {preset: first.preset, sets: first.sets, calibration: first.calibration}, () => changed());
+  const runs = {preloaded: null, camera: null};  // the newest answers: {board, run}
+  let view = 'preloaded';
+  let shown = null;     // the board that is asked for: that of the history, or while a buffer is dragged another
+  let settled = {};     // of `runs` those of boards of the history
+  let previous = {};    // the same before the last change
+  let pinned = null;    // A: {board, runs}
+  let gains = null;     // what `explain` has found: {address, source, knobs}
+  let question = null;  // the controller of the open `explain`
+
+  // What the page is made of.
+  addHead(page, {kind: 'live board', name: '', headline: ''});
+  const [name, headline] = [page.querySelector('.top b'), page.querySelector('h1')];
+  const figures = h('dl', {class: 'answers', id: 'figures'});
+  const message = h('p', {class: 'bad', id: 'message', role: 'alert'});
+  const keys = makeKeys(live, set);
+  const chart = makeChart({
+    place: (buffer, bank, isNew) => showBoard(buffer ? moved(buffer, bank, isNew) : history.board),
+    drop: (buffer, bank, isNew) => history.show(moved(buffer, bank, isNew))
+  });
+  const cards = h('div', {id: 'cards'});
+  const gainsHost = h('div', {id: 'gains'});
+  const command = h('div');
+  const undo = button('Undo', () => history.step(-1), {id: 'undo', title: 'Ctrl-Z'});
+  const redo = button('Redo', () => history.step(1), {id: 'redo', title: 'Ctrl-Y'});
+  const pin = button('Pin as A', pinOrNot, {id: 'pin', 'aria-pressed': 'false'});
+  const explain = button('What gains most?', askGains, {id: 'explain'});
+  const boards = h('select', {id: 'boards', change: event => openNamed(event.target)});
+  const file = h('input', {
+    type: 'file', accept: '.yaml', id: 'board-file', 'aria-label': 'Open a board file',
+    change: async event => event.target.files[0] && openYaml(await event.target.files[0].text())
+  });
+  const saveAs = h('input', {type: 'text', id: 'save-name', value: 'board.yaml', size: 14, 'aria-label': 'Name of the file'});
+  const tools = controls(
+      undo, redo, h('label', null, 'board ', boards), h('label', null, 'shown ', choice('view', kViews, view, chosen => {
+                                                           view = chosen;
+                                                           draw();
+                                                         })),
+      pin, explain);
+  const exports = folded(
+      'Open, save, share',
+      controls(
+          h('label', null, 'open a file ', file),
+          button('Copy link', async event => {
+            await navigator.clipboard.writeText(location.href).catch(() => {});
+            event.target.textContent = 'Copied: it is the address of this page';
+          }, {id: 'copy-link'}),
+          button('Board as YAML', () => download(`${fileName(current().run.stats.board)}.yaml`, 'text/yaml', current().run.config_yaml), {id: 'yaml'}),
+          button('Report', async () => download('report.html', 'text/html', await reportOf({
+            format: 2, version, kind: 'run', text: '', run: {folder: 'the live board', command: commandOf(history.board, view, frames[view]), ...current().run, knobs: current().run.knobs}
+          })), {id: 'report'}),
+          saveAs, button('Save in the folder', save, {id: 'save'})),
+      command);
+  const board = h('div', {class: 'live'}, h('div', {class: 'cards'}, chart.element), keys.element);
+  const pictures = makePictures(() => history.board, openError);
+  const sweep = makeSweep(live, () => [history.board, view, frames[view]], openYaml, openError);
+  const tabs = [
+    ['board', 'The board', [board, gainsHost, cards]], ['pictures', 'Pictures', [pictures]], ['sweep', 'Sweep', [sweep]]
+  ];
+  if (database) {
+    const points = h('div');
+    tabs.push(['database', 'Database', [points]]);
+    showDatabase(points, {database}, openYaml);
+    points.querySelector('.head .theme').remove();
+  }
+  const panels = tabs.map(([id, , children]) => h('div', {id: `tab-${id}`, role: 'tabpanel', 'aria-labelledby': `to-${id}`}, children));
+  const buttons = tabs.map(([id, text], i) => h('button', {type: 'button', role: 'tab', id: `to-${id}`, 'aria-controls': `tab-${id}`, click: () => open(i)}, text));
+  function open(chosen) {
+    panels.forEach((panel, i) => panel.toggleAttribute('hidden', i !== chosen));
+    buttons.forEach((tab, i) => {
+      tab.setAttribute('aria-selected', String(i === chosen));
+      tab.tabIndex = i === chosen ? 0 : -1;
+    });
+  }
+  const list = h('div', {class: 'tabs', role: 'tablist', keydown: event => {
+    const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
+    if (!step) return;
+    const next = (buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length;
+    open(next);
+    buttons[next].focus();
+  }}, buttons);
+  page.append(tools, exports, message, figures, list, ...panels);
+  open(database && !boardOf(location.hash) ? tabs.length - 1 : 0);
+  boards.append(
+      h('option', {value: ''}, 'choose'),
+      h('optgroup', {label: 'presets'}, live.presets.map(preset => h('option', {value: preset}, preset))));
+  boardFiles().then(files => files.length && boards.append(
+      h('optgroup', {label: 'board files'}, files.map(path => h('option', {value: `./${path}`}, path))))).catch(openError);
+  addEventListener('keydown', event => {
+    if (!(event.ctrlKey || event.metaKey) || /^(INPUT|TEXTAREA)$/.test(event.target.tagName)) return;
+    const by = {z: event.shiftKey ? 1 : -1, y: 1}[event.key.toLowerCase()];
+    if (!by) return;
+    event.preventDefault();
+    history.step(by);
+  });
+
+  const current = () => runs[view] ?? runs.preloaded;
+  const isOf = (answer, its) => answer && addressOf(answer.board) === addressOf(its);
+
+  // Changes of the board.
+  function set(changes) {
+    history.show(withSets(history.board, changes));
+  }
+  function moved(buffer, bank, isNew) {
+    const {settings} = (runs.preloaded ?? runs.camera).run;
+    const more = isNew ? [[`ssram.banks.${bank}`, '{}']] : [];
+    return withSets(history.board, [...more, moveOf(settings, buffer, bank)]);
+  }
+  async function openYaml(text) {
+    try {
+      const {preset, sets} = await boardOfFile(text);
+      history.show({preset, sets: sets.map(splitSet), calibration: ''});
+      open(0);
+    } catch (error) {
+      openError(error);
+    }
+  }
+  async function openNamed(select) {
+    const {value} = select;
+    select.value = '';
+    try {
+      const {preset, sets} = await ask('check', {preset: value, sets: []});
+      history.show({preset, sets: sets.map(splitSet), calibration: ''});
+    } catch (error) {
+      openError(error);
+    }
+  }
+  async function save() {
+    try {
+      const {path} = await ask('save', history.board, {name: saveAs.value});
+      message.textContent = '';
+      saveAs.after(note(`Saved: ${path}`));
+    } catch (error) {
+      openError(error);
+    }
+  }
+  function openError(error) {
+    message.textContent = error.message;
+  }
+
+  // Questions. The answers of all boards of a drag are shown; those of the board itself stay.
+  function answered(source) {
+    return (its, run) => {
+      run.isLive = true;
+      runs[source] = {board: its, run};
+      if (isOf(runs[source], history.board)) settled = {...settled, [source]: runs[source]};
+      message.textContent = '';
+      draw();
+    };
+  }
+  function failed(its, error) {
+    if (!isOf({board: its}, shown)) return;
+    if (error instanceof Refused && isOf({board: its}, history.board))
+      keys.refuse(error.problems);
+    message.textContent = `This board is refused: ${error.message}`;
+    page.classList.add('refused');
+  }
+  const more = source => ({source, frames: frames[source]});
+  const askCore = inTurn((its, signal) => ask('run', its, {...more('preloaded'), record: false}, signal), answered('preloaded'), failed);
+  const askComputer = inTurn((its, signal) => ask('run', its, {...more('camera'), record: false}, signal), answered('camera'), failed);
+  let drawn = '';  // the board and the view of the cards
+  const askCards = inTurn(
+      ([its, source], signal) => ask('run', its, {...more(source), record: true}, signal),
+      ([its, source], run) => isOf({board: its}, history.board) && source === view && drawCards(its, run),
+      ([its], error) => failed(its, error));
+  let quiet = 0;
+  function askWhenQuiet() {
+    clearTimeout(quiet);
+    const wanted = `${view} ${addressOf(history.board)}`;
+    if (wanted !== drawn) quiet = setTimeout(() => askCards([history.board, view]), kQuiet);
+  }
+
+  function showBoard(its) {
+    shown = its;
+    askCore(its);
+    if (its === history.board) askComputer(its);
+    markWaiting();
+  }
+  function changed() {
+    previous = settled;
+    question?.abort();
+    page.classList.remove('refused');
+    showBoard(history.board);
+    undo.disabled = !history.canUndo;
+    redo.disabled = !history.canRedo;
+    window.history.replaceState(null, '', addressOf(history.board));
+    askWhenQuiet();
+  }
+
+  // Drawing.
+  function markWaiting() {
+    for (const cell of figures.children) {
+      const answer = runs[cell.dataset.source];
+      cell.classList.toggle('waiting', !isOf(answer, shown));
+      cell.querySelector('.state').textContent = isOf(answer, shown) ? '' : ' …';
+    }
+    chart.element.classList.toggle('waiting', !isOf(runs[view], shown));
+    cards.classList.toggle('waiting', drawn !== `${view} ${addressOf(history.board)}`);
+  }
+  function draw() {
+    const before = pinned?.runs ?? (shown === history.board ? previous : settled);
+    figures.replaceChildren(...kFigures.map(([title, source, numberOf, textOf, noteOf]) => {
+      const [now, then] = [runs[source], pinned?.runs[source]].map(answer => answer && withFoldedLanes(answer.run));
+      const number = now && numberOf(now);
+      const difference = now && then && number - numberOf(then);
+      return h('div', {'data-source': source, 'data-figure': title}, h('dt', null, title, h('span', {class: 'state'})),
+               h('dd', {'data-value': number ?? ''}, now ? textOf(number, now) : '…'),
+               then && now && h('dd', {class: 'difference'}, `A: ${textOf(numberOf(then), then)}, ${
+                   Math.abs(difference) < 1e-9 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
+               h('dd', {class: 'note'}, now ? noteOf(now) : ''));
+    }));
+    const its = runs[view];
+    if (its) {
+      const run = withFoldedLanes(its.run);
+      chart.show(run, before[view]?.run && withFoldedLanes(before[view].run), pinned ? 'A' : 'before');
+      if (isOf(its, history.board)) {
+        name.textContent = run.stats.board;
+        headline.textContent = headlineOf(run);
+        document.title = `${run.stats.board}: ${headlineOf(run)}`;
+        keys.show(its.run.settings);
+        command.replaceChildren(commandLine(commandOf(history.board, view, frames[view])));
+      }
+    }
+    markWaiting();
+    askWhenQuiet();
+  }
+  function drawCards(its, run) {
+    drawn = `${view} ${addressOf(its)}`;
+    Object.assign(run, {isLive: true, command: commandOf(its, view, frames[view])});
+    const has = gains && gains.address === addressOf(its) && gains.source === view;
+    if (has) run.knobs = gains.knobs;
+    runs[view] = {board: its, run};
+    cards.style.minHeight = `${cards.offsetHeight}px`;
+    cards.replaceChildren();
+    addCards(cards, run);
+    if (pinned?.runs[view]) {
+      const table = differenceTable(pinned.runs[view].run, run);
+      addChart(cards, {
+        id: 'differences', title: `${count(table[1].length, 'figure')} of stats.json differ from A`,
+        body: htmlTable(table[0], table[1].map(row => row.map(shortened))), numbers: () => table
+      });
+    }
+    requestAnimationFrame(() => requestAnimationFrame(() => {
+      cards.style.minHeight = '';
+    }));
+    drawGains(has ? gains.knobs : null);
+    markWaiting();
+  }
+  function pinOrNot() {
+    pinned = pinned ? null : {board: history.board, runs: {...runs}};
+    pin.textContent = pinned ? 'Let A go' : 'Pin as A';
+    pin.setAttribute('aria-pressed', String(Boolean(pinned)));
+    drawn = '';
+    draw();
+  }
+
+  // What each single change gains.
+  async function askGains() {
+    question?.abort();
+    const controller = question = new AbortController();
+    const bar = h('progress', {'aria-label': 'Single changes are tried'});
+    const text = h('span');
+    gainsHost.replaceChildren(controls(bar, text, button('Stop', () => controller.abort())));
+    const [its, source] = [history.board, view];
+    try {
+      const knobs = await askLong('explain', its, {source}, controller.signal, (done, of, said) => {
+        bar.max = of;
+        bar.value = done;
+        text.textContent = said;
+      });
+      gains = {address: addressOf(its), source, knobs};
+      drawn = '';
+      askWhenQuiet();
+    } catch (error) {
+      gainsHost.replaceChildren();
+      if (error.name !== 'AbortError') openError(error);
+    }
+  }
+  function drawGains(knobs) {
+    gainsHost.replaceChildren();
+    if (!knobs) return;
+    const kMost = 8;
+    const best = knobs.changes.filter(({gained_percent: gained}) => gained > 0.05).slice(0, kMost);
+    const rows = best.map(step => [
+      button('Apply', () => set(step.sets.map(splitSet))), `${step.key}: ${step.from} → ${step.to}`,
+      rate(step.frames_per_second), gainText(step.gained_percent / 100), percent(step.area.slices_percent / 100),
+      [step.changes_disparities && 'changes the disparities', step.loses_pixels && 'loses pixels'].filter(Boolean).join(', ')
+    ]);
+    const group = h('div', {class: 'cards'});
+    addChart(group, {
+      id: 'best-changes', wide: true,
+      title: best.length ? 'The single changes that gain most' : 'No single change gains frames',
+      body: htmlTable(['', 'change', 'frames/s', 'gain', 'slices', ''], rows),
+      note: `Of ${count(knobs.changes.length, 'change')}; all are below, under what to change.`
+    });
+    gainsHost.replaceChildren(group);
+  }
+
+  changed();
+}
