@@ -9,11 +9,14 @@ import json
 import os
 import pathlib
 import re
+import secrets
 import sqlite3
+import subprocess
 
 import numpy
 
-from stereotlm.worker import Problem, Refused, execute, temporary_folder
+from stereotlm import worker
+from stereotlm.worker import Failed, Problem, Refused, execute, temporary_folder
 
 
 def boards():
@@ -405,6 +408,16 @@ class Board:
             execute("sweep", "the plan", *_options(words), arrays=files)
             return _points(database, varied)
 
+    def live(self, height=1000):
+        """The live board in the cell of a notebook, so many pixels high: see Live. It starts as this board.
+
+        It may read and write files in the current folder only.
+        """
+        board = f"./{self.board}" if self.board.startswith("-") else self.board
+        sets = [f"--set={path}={text}" for path, text in self._state[0].items()]
+        options = _options({"calibration": self.calibration, "folder": os.getcwd(), "port": 0})
+        return Live([board, *sets, *options], height)
+
     def chart(self, source="camera"):
         """The memory chart of the board as SVG."""
         return _chart(self._execute, source=source)
@@ -446,6 +459,42 @@ def _chart(draw, **options):
         file = pathlib.Path(folder) / "chart.svg"
         draw("diagram", "--out", file, *_options(options))
         return file.read_text(encoding="utf-8")
+
+
+class Live:
+    """A page of `stereotlm serve`, which ends with Python, or by close(). `url` is its address."""
+
+    # The shell ends the server when the pipe closes, whatever ends Python.
+    _SCRIPT = '"$@" & exec >&- 2>&-; read -r _; kill $!; wait'
+
+    def __init__(self, words, height):
+        command = ["stereotlm-live", "-c", self._SCRIPT, "/bin/sh", worker.find_program(), "serve", *words]
+        self._process = subprocess.Popen(command, executable="/bin/sh", bufsize=0, stdin=subprocess.PIPE,
+                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                         start_new_session=True)
+        worker.pipes.update((self._process.stdin, self._process.stdout))
+        self._height = height
+        said = []
+        for line in map(os.fsdecode, self._process.stdout):
+            said.append(line.removeprefix("stereotlm: error: "))
+            self.url = next(iter(re.findall(r"http://127\.0\.0\.1:\d+/\S*", line)), None)
+            if self.url:
+                return
+        self.close()
+        raise Failed("".join(said).strip())
+
+    def close(self):
+        """Ends the server."""
+        if not self._process.stdin.closed:
+            self._process.stdin.close()
+            self._process.wait()
+
+    def _repr_html_(self):
+        # The cookie is for one name of this machine: the page has that of the notebook.
+        name = f"stereotlm-{secrets.token_hex(4)}"
+        return (f'<iframe id="{name}" width="100%" height="{int(self._height)}" style="border: 0"></iframe>'
+                f'<script>document.getElementById("{name}").src = {json.dumps(self.url)}.replace('
+                '"127.0.0.1", location.hostname === "localhost" ? "localhost" : "127.0.0.1")</script>')
 
 
 class Run:

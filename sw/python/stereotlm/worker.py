@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -65,7 +66,8 @@ class Answer:
         return json.loads(self.output)
 
 
-def _program():
+def find_program():
+    """The path of the program, as the text of the module stereotlm says."""
     folders = pathlib.Path(__file__).resolve().parents
     # PREFIX/lib/python3/dist-packages/stereotlm/worker.py, or sw/python/stereotlm/worker.py of the sources
     places = [folders[4] / "bin" / "stereotlm", folders[3] / "build" / "release" / "bin" / "stereotlm"]
@@ -129,7 +131,7 @@ def temporary_folder():
     words = ["stereotlm-remover", "-c", script, "/bin/sh", folder]
     with subprocess.Popen(words, executable="/bin/sh", bufsize=0, stdin=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, start_new_session=True) as remover:
-        _pipes.add(remover.stdin)
+        pipes.add(remover.stdin)
         try:
             yield folder
         finally:
@@ -139,9 +141,11 @@ def temporary_folder():
 class Worker:
     """A process that executes commands, one after the other. Threads may share it."""
 
-    def __init__(self, program=None):
-        """`program`: the path of the program stereotlm; by default as the module's text says."""
+    def __init__(self, program=None, memory=None):
+        """`program`: the path of the program stereotlm; by default as the module's text says. `memory`: the
+        bytes of address space that the worker and each of its commands may have."""
         self._program = program
+        self._memory = memory
         self._process = None
         self._answers = None
         self._lock = threading.RLock()
@@ -151,7 +155,8 @@ class Worker:
         """Executes the command of these words, with arrays of 8 bits by their names. Returns an Answer.
 
         Raises Refused, Failed or WorkerDied. Warnings of the program become warnings of Python. If it is
-        interrupted (KeyboardInterrupt), the worker is ended.
+        interrupted (KeyboardInterrupt), the worker is ended. `progress`: whether a bar is shown, or a function
+        that is called with (done, of, text); what it raises ends the worker, too.
         """
         pixels = {name: _pixels(name, array) for name, array in (arrays or {}).items()}
         words = [_word(argument) for argument in arguments]
@@ -160,7 +165,7 @@ class Worker:
             bar = _Bar(progress)
             try:
                 self._send(words, folder, pixels)
-                return self._receive(bar)
+                return self._receive(progress if callable(progress) else bar.show)
             except (BrokenPipeError, EOFError):
                 raise WorkerDied(f"the worker has {self._end()}: the command is lost") from None
             except (Refused, Failed):
@@ -178,6 +183,20 @@ class Worker:
                 self._process.kill()
                 self._end()
 
+    def kill(self):
+        """Kills the process, also while another thread waits for its answer: that thread gets WorkerDied."""
+        process = self._process
+        if process is not None:
+            process.kill()
+
+    def start(self):
+        """Starts the process, if there is none, so that the next command need not wait for that."""
+        with self._lock:
+            if self._process is not None and self._process.poll() is not None:
+                self._end()  # while it had nothing to do: nothing is lost
+            if self._process is None:
+                self._begin()
+
     @property
     def pid(self):
         """The number of the process; None if there is none yet."""
@@ -191,18 +210,21 @@ class Worker:
         status = process.wait()
         return f"been ended by signal {-status}" if status < 0 else f"ended with status {status}"
 
+    def _begin(self):
+        # A session of its own: Ctrl-C is for this process, which then ends the worker.
+        # No buffer in front of the pipe: a process that is forked meanwhile would send it again.
+        program = _checked(self._program, "program") if self._program else find_program()
+        self._process = subprocess.Popen([program, "worker"], bufsize=0, stdin=subprocess.PIPE,
+                                         stdout=subprocess.PIPE, start_new_session=True)
+        pipes.update((self._process.stdin, self._process.stdout))
+        self._answers = io.BufferedReader(self._process.stdout)
+        if self._memory is not None:
+            hard = resource.prlimit(self._process.pid, resource.RLIMIT_AS)[1]
+            most = self._memory if hard == resource.RLIM_INFINITY else min(self._memory, hard)
+            resource.prlimit(self._process.pid, resource.RLIMIT_AS, (most, most))
+
     def _send(self, arguments, folder, pixels):
-        if self._process is not None and self._process.poll() is not None:
-            self._end()  # while it had nothing to do: nothing is lost
-        if self._process is None:
-            # A session of its own: Ctrl-C is for this process, which then ends the worker.
-            # No buffer in front of the pipe: a process that is forked meanwhile would send it again.
-            program = _checked(self._program, "program") if self._program else _program()
-            self._process = subprocess.Popen([program, "worker"], bufsize=0,
-                                             stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                             start_new_session=True)
-            _pipes.update((self._process.stdin, self._process.stdout))
-            self._answers = io.BufferedReader(self._process.stdout)
+        self.start()
         request = {"arguments": arguments, "folder": folder, "encoding": "latin-1",
                    "arrays": [{"name": name, "shape": shape} for name, (shape, _) in pixels.items()]}
         line = json.dumps(request).encode() + b"\n"
@@ -211,7 +233,7 @@ class Worker:
             while left:
                 left = left[self._process.stdin.write(left):]
 
-    def _receive(self, bar):
+    def _receive(self, show):
         answer = Answer("", {}, [])
         while True:
             line = self._answers.readline()
@@ -226,7 +248,7 @@ class Worker:
                 array = numpy.frombuffer(bytearray(data), numpy.uint8)
                 answer.arrays[part["array"]] = array.reshape(part["shape"])
             elif "progress" in part:
-                bar.show(part["done"], part["of"], part["progress"])
+                show(part["done"], part["of"], part["progress"])
             elif "message" in part:
                 answer.messages.append(part["message"])
             else:
@@ -261,7 +283,7 @@ def _pixels(name, array):
 def _leave():
     """In a forked process: leaves workers and folders to its parent, whose end only closed pipes show."""
     null = os.open(os.devnull, os.O_RDWR)
-    for pipe in list(_pipes):
+    for pipe in list(pipes):
         if not pipe.closed:
             os.dup2(null, pipe.fileno(), inheritable=False)
     os.close(null)
@@ -269,7 +291,7 @@ def _leave():
         worker._process, worker._lock = None, threading.RLock()
 
 
-_pipes = weakref.WeakSet()  # to workers, and to shells that remove folders
+pipes = weakref.WeakSet()  # to workers, and to shells that remove folders
 _workers = weakref.WeakSet()
 os.register_at_fork(after_in_child=_leave)
 _shared = Worker()
