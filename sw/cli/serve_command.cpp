@@ -28,8 +28,8 @@ constexpr const char* kServeFooter =
     "address that it prints gets an answer. It reads and writes no file outside the folder, but the input.\n"
     "Ctrl-C ends it. It needs Python with numpy, and the Python module stereotlm.";
 
-// Of the computer, for each change: enough for a steady rate of whole turns of all lists.
-constexpr int kComputerFrames = 32;
+// Of the computer, for each change: the first turn of lists of three, and two turns for the steady rate.
+constexpr int kComputerFrames = 18;
 
 struct ServeOptions : Options {
   using Options::Options;
@@ -69,8 +69,8 @@ struct ServeOptions : Options {
              {number<int>("0, or an integer, 1024..65535",
                           [](int its) { return its == 0 || (its >= 1024 && its <= 65535); })});
   Option origin = Option(this, "--origin", "URL",
-                         "Another address by which browsers reach the server: that of a proxy, such as "
-                         "https://hub.example.org/user/me/proxy/8017/");
+                         "Another origin under which browsers reach the page: that of a proxy, such as "
+                         "https://hub.example.org");
   Option open = Option(this, "--open", "", "Open the page in the browser of this machine");
 };
 

@@ -157,7 +157,7 @@ Schema check_schema() {
           {"pins?", from_one(), "of the FPGA that the board takes"},
           {"values?", map_to({{"type", {"integer", "number", "string", "array", "object"}}}),
            "the value of each key, by its path; each bank has all its values"},
-          {"preset?", text(), "the nearest preset: fewest values of --set make this board of it"},
+          {"preset?", text(), "BOARD if it is one, else the nearest: fewest values of --set make the board of it"},
           {"sets?", list_of(text()), "these: KEY=VALUE"},
       });
   schema["if"] = {{"properties", {{"ok", {{"const", true}}}}}};

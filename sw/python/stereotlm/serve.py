@@ -41,7 +41,6 @@ BODY, BOARD, PICTURE = 256 << 10, 1 << 20, 64 << 20  # bytes of a request, of a 
 PICTURES, PICTURE_BYTES = 12, 256 << 20  # that are kept
 POINTS = 2000  # of a sweep
 DEPTH, FILES, FOLDERS = 3, 500, 10000  # of the list of boards
-PAGE_DATA = "--json"  # option of run
 
 
 class _Error(Exception):
@@ -101,6 +100,7 @@ _RULES = {  # key: what is right, and the same in words
     "fit": _one_of("crop", "pad"),
     "offset": _number(-4096, 4096, int),
     "vary": (_varies, f"one or two keys, each with a list of plain values; at most {POINTS} points"),
+    "record": (lambda value: isinstance(value, bool), "true or false"),
     "name": (lambda value: _is_text(value, 200) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*\.yaml", value),
              "the name of a file, of letters, digits, _ . and -, which ends in .yaml"),
     "yaml": (lambda value: _is_text(value, BODY), "the text of a board file"),
@@ -133,7 +133,7 @@ def _said(error):
     if isinstance(error, _Error):
         return error.args[0], {"error": error.args[1]}
     if isinstance(error, Refused):  # as check --json prints it
-        return 422, {"problems": [
+        return 200, {"problems": [
             {name: value for name, value in dataclasses.asdict(problem).items() if value not in ("", False)}
             for problem in error.problems]}
     is_known = isinstance(error, (Failed, WorkerDied))
@@ -385,7 +385,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         self._answer(200, json.dumps({"files": files[:FILES]}))
 
     def _run(self, body):
-        body = _checked(body, ["board"], [*_OPTIONS, "pictures"])
+        body = _checked(body, ["board"], [*_OPTIONS, "pictures", "record"])
         words, pictures = ["--timing-only"], body.get("pictures")
         if pictures is not None:
             made, sent = ["synthetic"], ["truth", "truth_scale", "fit", "offset"]
@@ -394,7 +394,9 @@ class _Handler(http.server.BaseHTTPRequestHandler):
                 pictures[name] = self.server.path(name, pictures[name])
             options = {"truth_scale": "truth-scale", "offset": "disparity-offset"}
             words = [f"--{options.get(name, name)}={value}" for name, value in pictures.items()]
-        self._answer(200, self._execute("run", *self._words(body), *words, PAGE_DATA))
+        if not body.get("record", True):
+            words.append("--no-record")
+        self._answer(200, self._execute("run", *self._words(body), *words, "--page-data"))
 
     def _check(self, body):
         if isinstance(body, dict) and "yaml" in body:
@@ -414,7 +416,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
 
     def _explain(self, body):
         words = self._words(_checked(body, ["board"], _OPTIONS))
-        self._stream(lambda execute: execute("explain", *words, "--json"))
+        self._stream(lambda execute: execute("explain", *words, "--page-data"))
 
     def _sweep(self, body):
         body = _checked(body, ["board", "vary"], _OPTIONS)

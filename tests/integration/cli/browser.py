@@ -42,6 +42,38 @@ class Browser:
         self.choose("theme", theme)
         self.drawn()
 
+    def visit(self, address, width=1280, height=900):
+        """Opens the live page, and waits until its figures are there."""
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        self.driver.get(address)
+        self.settled()
+
+    def settled(self, timeout=30):
+        """Waits until the live page shows all figures and charts of its board."""
+        end = time.monotonic() + timeout
+        while self.run("return !document.querySelector('#cards > *') || "
+                       "(document.querySelector('.stale') && !document.querySelector('.refused'))"):
+            if time.monotonic() > end:
+                raise AssertionError("the live page still waits: " + self.text("#message"))
+            time.sleep(0.02)
+        self.drawn()
+
+    def until(self, script, timeout=30):
+        """Waits until a script returns something."""
+        end = time.monotonic() + timeout
+        while not self.run(script):
+            if time.monotonic() > end:
+                raise AssertionError(f"this does not come: {script}")
+            time.sleep(0.02)
+
+    def downloaded(self, name):
+        """The path of a file, once it is there."""
+        end = time.monotonic() + 10
+        while not (self.downloads / name).exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        return self.downloads / name
+
     def drawn(self):
         """Waits for two frames of the screen."""
         self.driver.execute_async_script(
@@ -111,14 +143,10 @@ class Browser:
 
     def csv(self, chart):
         """The text of the CSV of a chart."""
-        path = self.downloads / f"{chart}.csv"
         with contextlib.suppress(FileNotFoundError):
-            path.unlink()
+            (self.downloads / f"{chart}.csv").unlink()
         self.button(chart, "CSV")
-        end = time.monotonic() + 10
-        while not path.exists() and time.monotonic() < end:
-            time.sleep(0.05)
-        return path.read_text()
+        return self.downloaded(f"{chart}.csv").read_text()
 
     def drag(self, selector, start, end, steps=4):
         """Drags over an element, from one place to another; places are shares of its width and height."""

@@ -13,11 +13,14 @@ const kNewBank = '#new';
 const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
 const bankOf = element => element?.closest?.('.block[id^="bank-"]')?.id.slice('bank-'.length);
 
+// name -> MB/s of the links of a drawing; null: of none.
+const ratesOf = svg => new Map(
+    svg ? linksOf(svg).filter(({element}) => element.dataset.mbps).map(({name, rate}) => [name, rate]) : []);
+
 // The links whose rates differ: [[name, before, now], ..].
 function changedLinks(before, now) {
   if (!before) return [];
-  const [old, its] = [before, now].map(
-      svg => new Map(linksOf(svg).filter(({element}) => element.dataset.mbps).map(({name, rate}) => [name, rate])));
+  const [old, its] = [before, now].map(ratesOf);
   return [...new Set([...old.keys(), ...its.keys()])]
       .map(name => [name, old.get(name) ?? 0, its.get(name) ?? 0])
       .filter(([, a, b]) => Math.abs(b - a) >= kLeastChange);
@@ -28,8 +31,9 @@ function changedLinks(before, now) {
 export function makeChart({place, drop}) {
   const status = h('p', {class: 'note', id: 'chart-status', 'aria-live': 'polite'});
   const target = h('div', {class: 'new-bank', id: 'new-bank'}, 'Drop a buffer here: into a new bank');
+  const changes = h('p', {class: 'note', id: 'chart-changes'});
   const group = h('div');
-  const element = h('div', {class: 'live-chart'}, group, target, status);
+  const element = h('div', {class: 'live-chart'}, group, target, status, changes);
   const ghost = h('div', {class: 'ghost', hidden: true});
   document.body.append(ghost);
   const kIdle = 'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
@@ -121,9 +125,8 @@ export function makeChart({place, drop}) {
   }));
 
   function listChanges(links) {
-    if (links.length === 0) return;
     const texts = links.slice(0, kMostChanges).map(([name, a, b]) => `${name} ${fixed(a, 1)} → ${fixed(b, 1)}`);
-    status.textContent = `Links that change, MB/s: ${texts.join('; ')}${
+    changes.textContent = links.length === 0 ? '' : `Links that change, MB/s: ${texts.join('; ')}${
         links.length > kMostChanges ? `; and ${links.length - kMostChanges} more` : ''}.`;
   }
 
@@ -143,12 +146,12 @@ export function makeChart({place, drop}) {
     const left = group.querySelector('.memory')?.scrollLeft;
     group.style.minHeight = `${group.offsetHeight}px`;
     group.replaceChildren();
-    const changes = changedLinks(baseline, parse(run));
-    const before = new Map(changes.map(([link, a]) => [link, a]));
-    addMemory(group, [run], link => before.has(link.name) ?
-        [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
+    const links = changedLinks(baseline, parse(run));
+    const before = ratesOf(baseline);
+    addMemory(group, [run], link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
     const svg = group.querySelector('svg.memory-chart');
-    for (const link of linksOf(svg)) link.element.classList.toggle('changed', before.has(link.name));
+    const changed = new Set(links.map(([link]) => link));
+    for (const link of linksOf(svg)) link.element.classList.toggle('changed', changed.has(link.name));
     for (const buffer of svg.querySelectorAll('.buffer')) {
       const box = buffer.getBBox();
       buffer.prepend(s('rect', {
@@ -161,7 +164,7 @@ export function makeChart({place, drop}) {
     group.style.minHeight = '';
     if (hadFocus && focused) group.querySelector(`.buffer[data-key="${CSS.escape(focused)}"]`)?.focus({preventScroll: true});
     kept = null;
-    listChanges(changes);
+    listChanges(links);
   }
   status.textContent = kIdle;
   return {show, element};

@@ -11,14 +11,19 @@ export class Refused extends Error {
 async function checked(response) {
   if (response.ok) return response;
   const text = await response.text();
-  let answer = {};
+  let error = text || `The server answers ${response.status}.`;
   try {
-    answer = JSON.parse(text);
+    ({error} = JSON.parse(text));
   } catch {
-    throw new Error(text || `the server answers ${response.status}`);
+    // a plain text
   }
-  if (answer.problems) throw new Refused(answer.problems);
-  throw new Error(answer.error);
+  throw new Error(error);
+}
+
+async function documentOf(response) {
+  const answer = await response.json();
+  if (answer.problems?.length) throw new Refused(answer.problems);
+  return answer;
 }
 
 async function send(path, method, type, body, signal) {
@@ -37,13 +42,13 @@ const post = (path, body, signal) => send(path, 'POST', 'application/json', JSON
 const bodyOf = ({preset, sets, calibration}, more = {}) =>
     ({board: preset, sets, ...calibration ? {calibration} : {}, ...more});
 
-export const ask = async (path, board, more, signal) => (await post(path, bodyOf(board, more), signal)).json();
+export const ask = async (path, board, more, signal) => documentOf(await post(path, bodyOf(board, more), signal));
 
 export const sendPicture = async file =>
-    (await (await send('picture', 'PUT', 'application/octet-stream', file)).json()).id;
+    (await documentOf(await send('picture', 'PUT', 'application/octet-stream', file))).id;
 
-export const boardOfFile = async text => (await post('check', {yaml: text})).json();
-export const boardFiles = async () => (await (await fetch('boards')).json()).files;
+export const boardOfFile = async text => documentOf(await post('check', {yaml: text}));
+export const boardFiles = async () => (await documentOf(await checked(await fetch('boards')))).files;
 
 // A long question: `progress(done, of, text)` is called until its document is there.
 export async function askLong(path, board, more, signal, progress) {

@@ -96,7 +96,7 @@ export function showLive(page, {live, database, version}) {
   });
   const cards = h('div', {id: 'cards'});
   const gainsHost = h('div', {id: 'gains'});
-  const command = h('div');
+  const command = h('div', {id: 'command'});
   const undo = button('Undo', () => history.step(-1), {id: 'undo', title: 'Ctrl-Z'});
   const redo = button('Redo', () => history.step(1), {id: 'redo', title: 'Ctrl-Y'});
   const pin = button('Pin as A', pinOrNot, {id: 'pin', 'aria-pressed': 'false'});
@@ -256,6 +256,8 @@ export function showLive(page, {live, database, version}) {
     previous = settled;
     question?.abort();
     page.classList.remove('refused');
+    message.textContent = '';
+    keys.refuse([]);
     showBoard(history.board);
     undo.disabled = !history.canUndo;
     redo.disabled = !history.canRedo;
@@ -267,11 +269,11 @@ export function showLive(page, {live, database, version}) {
   function markWaiting() {
     for (const cell of figures.children) {
       const answer = runs[cell.dataset.source];
-      cell.classList.toggle('waiting', !isOf(answer, shown));
+      cell.classList.toggle('stale', !isOf(answer, shown));
       cell.querySelector('.state').textContent = isOf(answer, shown) ? '' : ' …';
     }
-    chart.element.classList.toggle('waiting', !isOf(runs[view], shown));
-    cards.classList.toggle('waiting', drawn !== `${view} ${addressOf(history.board)}`);
+    chart.element.classList.toggle('stale', !isOf(runs[view], shown));
+    cards.classList.toggle('stale', drawn !== `${view} ${addressOf(history.board)}`);
   }
   function draw() {
     const before = pinned?.runs ?? (shown === history.board ? previous : settled);

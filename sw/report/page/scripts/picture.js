@@ -17,7 +17,7 @@ async function pixelsOf({url, width, height, disparities}) {
     image.src = url;
     await image.decode();
   }
-  const canvas = h('canvas', {width: width ?? image.naturalWidth, height: height ?? image.naturalHeight});
+  const canvas = h('canvas', {width: width ?? image.naturalWidth, height: height ?? image.naturalHeight, 'aria-hidden': 'true'});
   const context = canvas.getContext('2d', {willReadFrequently: true});
   context.fillStyle = '#808080';
   context.fillRect(0, 0, canvas.width, canvas.height);
@@ -34,7 +34,7 @@ async function pixelsOf({url, width, height, disparities}) {
 
 // The amounts as a picture of their own, transparent where there is none.
 function overlayOf({values, columns, rows}) {
-  const canvas = h('canvas', {width: columns, height: rows, class: 'overlay'});
+  const canvas = h('canvas', {width: columns, height: rows, class: 'overlay', 'aria-hidden': 'true'});
   const context = canvas.getContext('2d');
   const data = context.createImageData(columns, rows);
   const highest = most(values);

@@ -97,7 +97,7 @@ export function drawing(host, width, height, {left = 0, right = 0, top = 0, bott
 export function layeredDrawing(host, width, height, margins, label) {
   const density = window.devicePixelRatio || 1;
   const size = {width: Math.round(width * density), height: Math.round(height * density)};
-  const canvas = h('canvas', {...size, style: `width:${width}px;height:${height}px`});
+  const canvas = h('canvas', {...size, 'aria-hidden': 'true', style: `width:${width}px;height:${height}px`});
   const context = canvas.getContext('2d');
   context.scale(density, density);
   context.translate(margins.left, margins.top);
