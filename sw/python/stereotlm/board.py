@@ -488,6 +488,7 @@ class Live:
         if not self._process.stdin.closed:
             self._process.stdin.close()
             self._process.wait()
+            self._process.stdout.close()
 
     def _repr_html_(self):
         # The cookie is for one name of this machine: the page has that of the notebook.

@@ -6,9 +6,7 @@ README.md has the routes, the limits, and what is refused.
 import argparse
 import base64
 import contextlib
-import dataclasses
 import hashlib
-import hmac
 import http.server
 import io
 import json
@@ -22,7 +20,6 @@ import shutil
 import signal
 import socket
 import socketserver
-import tempfile
 import threading
 import time
 import warnings
@@ -32,7 +29,7 @@ import numpy
 
 from stereotlm.worker import Failed, Problem, Refused, Worker, WorkerDied, temporary_folder
 
-CONNECTIONS, UPLOADS = 64, 4  # at once
+CONNECTIONS = 64
 QUICK, LONG = 4, 2  # commands at once: run, check and save; explain and sweep
 IDLE, REQUEST, ANSWER = 60, 20, 60  # s: until a request begins; until it is there; until a write is taken
 WAIT, WORK = 30, 120  # s: of a quick command for a worker; of its work
@@ -41,6 +38,8 @@ BODY, BOARD, PICTURE = 256 << 10, 1 << 20, 64 << 20  # bytes of a request, of a 
 PICTURES, PICTURE_BYTES = 12, 256 << 20  # that are kept
 POINTS = 2000  # of a sweep
 DEPTH, FILES, FOLDERS = 3, 500, 10000  # of the list of boards
+ROUTES = {"/": "GET", "/boards": "GET", "/picture": "PUT",
+          **dict.fromkeys(("/run", "/check", "/explain", "/sweep", "/save"), "POST")}
 
 
 class _Error(Exception):
@@ -51,81 +50,13 @@ class _Gone(Exception):
     """The browser has closed the connection."""
 
 
-# Bodies of requests.
-
-def _is_text(value, most=4096):
-    return isinstance(value, str) and 0 < len(value.encode(errors="replace")) <= most and not re.search(
-        "[\0\ud800-\udfff]", value)  # halves of surrogate pairs are no text
+def _require(is_right, status, sentence):
+    if not is_right:
+        raise _Error(status, sentence)
 
 
-def _number(low, high, *kinds):
-    return lambda value: type(value) in kinds and low <= value <= high, f"a number, {low}..{high}"
-
-
-def _one_of(*words):
-    return lambda value: value in words, " or ".join(words)
-
-
-def _are_sets(value):
-    return isinstance(value, list) and len(value) <= 300 and all(
-        isinstance(pair, list) and len(pair) == 2 and all(each == "" or _is_text(each) for each in pair)
-        for pair in value)
-
-
-# What a plan may take as it is: a word, a list of words, or a map of one key to one of them.
-_WORD = r"[\w.+-]+"
-_LIST = rf"\[{_WORD}(?:, ?{_WORD})*\]"
-_VALUE = re.compile(rf"{_WORD}|{_LIST}|{{{_WORD}: (?:{_WORD}|{_LIST})}}")
-
-
-def _varies(value):
-    return isinstance(value, dict) and 1 <= len(value) <= 2 and all(
-        _is_text(path, 200) and re.fullmatch(r"[A-Za-z][\w.-]*", path) and isinstance(values, list)
-        and all(_is_text(each) and _VALUE.fullmatch(each) for each in values)
-        for path, values in value.items()) and 1 <= math.prod(map(len, value.values())) <= POINTS
-
-
-_ID = lambda value: _is_text(value, 64), "the id of a picture"
-_RULES = {  # key: what is right, and the same in words
-    "board": (lambda value: _is_text(value) and value[0] != "-",
-              "a preset or the path of a board file; it does not begin with -"),
-    "sets": (_are_sets, "a list of at most 300 pairs [key, value], texts of at most 4096 bytes"),
-    "calibration": (_is_text, "a path"),
-    "source": _one_of("preloaded", "camera"),
-    "frames": _number(1, 100000, int),
-    "pictures": (lambda value: isinstance(value, dict), "an object"),
-    "synthetic": _number(0, (1 << 31) - 1, int),
-    "left": _ID, "right": _ID, "truth": _ID,
-    "truth_scale": _number(1e-6, 1e6, int, float),
-    "fit": _one_of("crop", "pad"),
-    "offset": _number(-4096, 4096, int),
-    "vary": (_varies, f"one or two keys, each with a list of plain values; at most {POINTS} points"),
-    "record": (lambda value: isinstance(value, bool), "true or false"),
-    "name": (lambda value: _is_text(value, 200) and re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*\.yaml", value),
-             "the name of a file, of letters, digits, _ . and -, which ends in .yaml"),
-    "yaml": (lambda value: _is_text(value, BODY), "the text of a board file"),
-}
-_OPTIONS = ["sets", "calibration", "source", "frames"]
-
-
-def _checked(body, needed, optional=()):
-    """The values of an object that are not null. Those of `needed` are there."""
-    if not isinstance(body, dict):
-        raise _Error(400, "the body: must be an object")
-    for key, value in body.items():
-        if key not in (*needed, *optional):
-            raise _Error(400, f"{json.dumps(key[:40])}: unknown key")
-        if value is not None and not _RULES[key][0](value):
-            raise _Error(400, f"{key}: must be {_RULES[key][1]}")
-    body = {key: value for key, value in body.items() if value is not None}
-    for key in needed:
-        if key not in body:
-            raise _Error(400, f"{key}: is missing")
-    return body
-
-
-def _refusal(key, value, rule):
-    return Refused([Problem("the request", rule, f"{key} = {value}: {rule}", key, value)])
+def _refuse(key, value, rule):
+    raise Refused([Problem("the request", rule, f"{key} = {value}: {rule}", key, value)])
 
 
 def _said(error):
@@ -133,15 +64,74 @@ def _said(error):
     if isinstance(error, _Error):
         return error.args[0], {"error": error.args[1]}
     if isinstance(error, Refused):  # as check --json prints it
-        return 200, {"problems": [
-            {name: value for name, value in dataclasses.asdict(problem).items() if value not in ("", False)}
-            for problem in error.problems]}
+        return 200, {"problems": [{name: value for name, value in vars(problem).items() if value}
+                                  for problem in error.problems]}
     is_known = isinstance(error, (Failed, WorkerDied))
     return 500, {"error": str(error) if is_known else f"{type(error).__name__}: {error}"}
 
 
-def _equal(one, other):
-    return hmac.compare_digest(one.encode(errors="replace"), other.encode())
+def _is_text(value, most=4096, form=r"[^\0\ud800-\udfff]+"):  # halves of surrogate pairs are no text
+    return isinstance(value, str) and len(value) <= most and re.fullmatch(form, value) is not None
+
+
+def _is_list(value, most, is_right):
+    return isinstance(value, list) and len(value) <= most and all(map(is_right, value))
+
+
+def _is_set(value):
+    return _is_list(value, 2, lambda text: text == "" or _is_text(text)) and len(value) == 2
+
+
+# What a plan may take as it is: a word, a list of words, or a map of one key to one of them.
+_WORD = r"[\w.+-]+"
+_WORDS = rf"{_WORD}|\[{_WORD}(?:, ?{_WORD})*\]"
+_VALUE = rf"{_WORDS}|{{{_WORD}: (?:{_WORDS})}}"
+
+
+def _is_value(value):
+    return _is_text(value, 999, _VALUE)
+
+
+def _varies(value):
+    return isinstance(value, dict) and len(value) in (1, 2) and all(
+        _is_text(key, 200, r"[A-Za-z][\w.-]*") and _is_list(texts, POINTS, _is_value)
+        for key, texts in value.items()) and 1 <= math.prod(map(len, value.values())) <= POINTS
+
+
+def _number(low, high, *kinds):
+    return lambda value: type(value) in kinds and low <= value <= high, f"a number, {low}..{high}"
+
+
+_ID = _is_text, "the id of a picture"
+_RULES = {  # key of a body: what is right, and the same in words
+    "board": (lambda value: _is_text(value) and value[0] != "-", "a preset or a path; it begins with no -"),
+    "sets": (lambda value: _is_list(value, 300, _is_set), "at most 300 pairs [key, value] of texts"),
+    "calibration": (_is_text, "a path"),
+    "source": (lambda value: value in ("preloaded", "camera"), "preloaded or camera"),
+    "frames": _number(1, 100000, int),
+    "pictures": (lambda value: isinstance(value, dict), "an object"),
+    "synthetic": _number(0, (1 << 31) - 1, int), "left": _ID, "right": _ID, "truth": _ID,
+    "truth_scale": _number(1e-6, 1e6, int, float),
+    "fit": (lambda value: value in ("crop", "pad"), "crop or pad"),
+    "offset": _number(-4096, 4096, int),
+    "vary": (_varies, f"one or two keys, each with a list of plain values; at most {POINTS} points"),
+    "record": (lambda value: isinstance(value, bool), "true or false"),
+    "name": (lambda value: _is_text(value, 200, r"[A-Za-z0-9][A-Za-z0-9_.-]*\.yaml"),
+             "letters, digits, _ . and -, with .yaml at the end"),
+    "yaml": (lambda value: _is_text(value, BODY), "the text of a board file"),
+}
+_OPTIONS = ["sets", "calibration", "source", "frames"]
+
+
+def _checked(body, needed, optional=()):
+    """The values of an object that are not null. Those of `needed` are there."""
+    _require(isinstance(body, dict), 400, "the body: must be an object")
+    for key, value in body.items():
+        _require(key in (*needed, *optional), 400, f"{json.dumps(key[:40])}: unknown key")
+        _require(value is None or _RULES[key][0](value), 400, f"{key}: must be {_RULES[key][1]}")
+    for key in needed:
+        _require(body.get(key) is not None, 400, f"{key}: is missing")
+    return {key: value for key, value in body.items() if value is not None}
 
 
 class _Received(io.RawIOBase):
@@ -191,8 +181,8 @@ class _Handler(http.server.BaseHTTPRequestHandler):
             self._route()
         except _Gone:
             self.close_connection = True
-        except OSError:
-            raise  # the connection is lost
+        except (ConnectionError, socket.timeout):
+            raise
         except Exception as error:
             status, document = _said(error)
             if self.path.partition("?")[0] == "/":
@@ -208,49 +198,40 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         return values[0].strip() if len(values) == 1 else ""
 
     def _route(self):
-        server = self.server
-        if self._header("Host").lower() not in server.hosts:
-            raise _Error(403, f"The header Host must be one of: {', '.join(sorted(server.hosts))}")
-        if self.request_version != "HTTP/1.1":
-            raise _Error(505, "The request must be of HTTP/1.1")
-        path, _, query = self.path.partition("?")
-        routes = {"/": "GET", "/boards": "GET", "/picture": "PUT",
-                  **dict.fromkeys(("/run", "/check", "/explain", "/sweep", "/save"), "POST")}
-        if path not in routes:
-            raise _Error(404, "There is no such page")
-        method = routes[path]
-        if self.command != method:
-            raise _Error(405, f"{path} takes {method} only")
+        server, (path, _, query) = self.server, self.path.partition("?")
+        _require(self._header("Host").lower() in server.hosts, 403,
+                 f"The header Host must be one of: {', '.join(sorted(server.hosts))}")
+        _require(self.request_version == "HTTP/1.1", 505, "The request must be of HTTP/1.1")
+        _require(path in ROUTES, 404, "There is no such page")
+        method = ROUTES[path]
+        _require(self.command == method, 405, f"{path} takes {method} only")
         length = self._header("Content-Length") if "Content-Length" in self.headers else "0"
-        if "Transfer-Encoding" in self.headers or not re.fullmatch(r"[0-9]{1,18}", length):
-            raise _Error(411, "The header Content-Length must say how long the body is")
-        most = {"GET": 0, "POST": BODY, "PUT": PICTURE}[method]
-        if int(length) > most:
-            raise _Error(413, f"The body must have at most {most} bytes")
+        _require("Transfer-Encoding" not in self.headers and re.fullmatch(r"[0-9]{1,18}", length), 411,
+                 "The header Content-Length must say how long the body is")
+        most, kind = {"GET": (0, ""), "POST": (BODY, "application/json"),
+                      "PUT": (PICTURE, "application/octet-stream")}[method]
+        _require(int(length) <= most, 413, f"The body must have at most {most} bytes")
         self._is_read = method == "GET"
         if path == "/" and query:
             return self._open(query)
-        cookies = [part.strip().partition("=") for part in self._header("Cookie").split(";")]
-        if not any(name == server.cookie and _equal(value, server.secret) for name, _, value in cookies):
-            raise _Error(403, "Open the address that stereotlm serve has printed")
-        if method != "GET" and self._header("Origin").lower() not in server.origins:
-            raise _Error(403, "The header Origin must be that of the page")
-        kind = {"POST": "application/json", "PUT": "application/octet-stream"}.get(method, "")
-        if self._header("Content-Type").lower().partition(";")[0].strip() != kind and kind:
-            raise _Error(415, f"The header Content-Type must be {kind}")
-        arguments = {"GET": list, "POST": lambda: [self._json(int(length))], "PUT": lambda: [int(length)]}
-        return getattr(self, f"_{path[1:] or 'page'}")(*arguments[method]())
+        cookies = [part.strip().encode() for part in self._header("Cookie").split(";")]
+        _require(any(secrets.compare_digest(each, server.cookie.encode()) for each in cookies), 403,
+                 "Open the address that stereotlm serve has printed")
+        if method != "GET":
+            _require(self._header("Origin").lower() in server.origins, 403, "The Origin must be this page")
+            _require(self._header("Content-Type").lower().partition(";")[0].strip() == kind, 415,
+                     f"The header Content-Type must be {kind}")
+        route = getattr(self, f"_{path[1:] or 'page'}")
+        return route() if method == "GET" else route(int(length)) if method == "PUT" else route(
+            self._json(int(length)))
 
     def _json(self, length):
-        def refuse(name):
-            raise ValueError(name)
-
         data = self.rfile.read(length)
         if len(data) < length:
             raise _Gone
         self._is_read = True
         try:
-            return json.loads(data.decode(), parse_constant=refuse)
+            return json.loads(data.decode(), parse_constant=int)  # NaN is no integer
         except (ValueError, RecursionError):
             raise _Error(400, "the body: must be JSON in UTF-8") from None
 
@@ -282,15 +263,17 @@ class _Handler(http.server.BaseHTTPRequestHandler):
     def _stream(self, work):
         """Answers with the progress that work(execute) makes, a line each, and then with its document."""
         refusal = "two long questions are at work: wait until one has ended"
-        with self._worker(self.server.long, 0, None, refusal) as worker:
-            self._head(200, "application/x-ndjson", Transfer_Encoding="chunked")
-            show = lambda *progress: self._line(json.dumps(dict(zip(("done", "of", "text"), progress))))
-            try:
+        show = lambda *progress: self._line(json.dumps(dict(zip(("done", "of", "text"), progress))))
+        try:
+            with self._worker(self.server.long, 0, None, refusal) as worker:
+                self._head(200, "application/x-ndjson", Transfer_Encoding="chunked")
                 document = work(lambda *words, **more: worker.execute(*words, **more, progress=show).output)
-                self._line('{"document": %s}' % document.replace("\n", " "))  # its texts have no line ends
-            except (Refused, Failed) as error:
-                self._line(json.dumps(_said(error)[1]))
-            self.wfile.write(b"0\r\n\r\n")
+            self._line('{"document": %s}' % document.replace("\n", " "))  # its texts have no line ends
+        except (_Gone, _Error):
+            raise
+        except Exception as error:
+            self._line(json.dumps(_said(error)[1]))
+        self.wfile.write(b"0\r\n\r\n")
 
     # Commands.
 
@@ -319,17 +302,16 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         thread.start()
         try:
             yield worker
-        except WorkerDied:
-            if why:
-                raise why[0] from None
-            raise
+        except WorkerDied as died:
+            raise (why or [died])[0] from None
         finally:
             os.close(end)
             thread.join()
             os.close(ended)
-            if why:  # for the next command
+            if why:
                 worker.close()
-                worker.start()
+                with contextlib.suppress(OSError):  # the next command tries it again
+                    worker.start()
             free.put(worker)
 
     def _execute(self, *words, arrays=None):
@@ -342,23 +324,24 @@ class _Handler(http.server.BaseHTTPRequestHandler):
                 if attempt == 1:
                     raise
 
-    def _inside(self, key, path, most=math.inf):
-        """The path of a regular file in the folder."""
+    def _inside(self, key, path):
+        """The size of a regular file in the folder."""
         real = os.path.realpath(path)
         if os.path.commonpath([self.server.folder, real]) != self.server.folder:
-            raise _refusal(key, path, "must be in the folder of stereotlm serve")
-        if not os.path.isfile(real) or os.path.getsize(real) > most:
-            raise _refusal(key, path, f"must be a file of at most {most} bytes")
-        return path
+            _refuse(key, path, "must be in the folder of stereotlm serve")
+        if not os.path.isfile(real):
+            _refuse(key, path, "must be a file")
+        return os.path.getsize(real)
 
     def _words(self, body):
         """BOARD and its options."""
         board, calibration = body["board"], body.get("calibration")
-        if "/" in board or board.endswith(".yaml"):
-            self._inside("board", board, BOARD)
+        if ("/" in board or board.endswith(".yaml")) and self._inside("board", board) > BOARD:
+            _refuse("board", board, f"must have at most {BOARD} bytes")
         if calibration not in (None, self.server.calibration):
-            for end in (".yaml", "_left.lut", "_right.lut"):
-                self._inside("calibration", calibration.removesuffix(".yaml") + end)
+            stem = calibration.removesuffix(".yaml")
+            for path in (calibration, f"{stem}_left.lut", f"{stem}_right.lut"):
+                self._inside("calibration", path)
         return [board, *(f"--set={key}={value}" for key, value in body.get("sets", [])),
                 *(f"--{name}={body[name]}" for name in ("calibration", "source", "frames") if name in body)]
 
@@ -368,18 +351,19 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         self._answer(200, self.server.page, "text/html")
 
     def _open(self, query):
-        if not _equal(query, f"token={self.server.token}"):
-            raise _Error(403, "Open the address that stereotlm serve has printed")
-        self._answer(303, "", "text/plain", Location="./", Set_Cookie=
-                     f"{self.server.cookie}={self.server.secret}; HttpOnly; SameSite=Lax; Path=/")
+        _require(secrets.compare_digest(query.encode(), f"token={self.server.token}".encode()), 403,
+                 "Open the address that stereotlm serve has printed")
+        cookie = f"{self.server.cookie}; HttpOnly; SameSite=Lax; Path=/"
+        self._answer(303, "", "text/plain", Location="./", Set_Cookie=cookie)
 
     def _boards(self):
         files = []
         for number, (folder, folders, names) in enumerate(os.walk(".")):
             folders[:] = sorted(name for name in folders if name[0] != "." and folder.count("/") < DEPTH)
             for path in (os.path.join(folder, name)[2:] for name in sorted(names) if name.endswith(".yaml")):
-                with contextlib.suppress(Refused):
-                    files += [self._inside("board", path, BOARD)] * _RULES["board"][0](path)
+                with contextlib.suppress(Refused, OSError):
+                    if _RULES["board"][0](path) and self._inside("board", path) <= BOARD:
+                        files.append(path)
             if len(files) >= FILES or number >= FOLDERS:
                 break
         self._answer(200, json.dumps({"files": files[:FILES]}))
@@ -410,7 +394,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         body = _checked(body, ["board", "name"], _OPTIONS[:2])
         path = os.path.join(self.server.folder, body["name"])
         if os.path.islink(path):
-            raise _refusal("name", body["name"], "must not be a symbolic link")
+            _refuse("name", body["name"], "must not be a symbolic link")
         self._execute("check", *self._words(body), f"--write={path}")
         self._answer(200, json.dumps({"path": path}))
 
@@ -426,11 +410,12 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         words = self._words(body)
 
         def work(execute):
-            folder = tempfile.mkdtemp(dir=self.server.scratch)
-            board, points = f"--board={folder}/board.yaml", f"--out={folder}/points.db"
+            folder = os.path.join(self.server.scratch, secrets.token_hex(8))
+            os.mkdir(folder)
             try:
                 execute("check", *words, f"--write={folder}/board.yaml")  # no text of `sets` is in the plan
-                execute("sweep", "the plan", board, points, *words[1 + len(body.get("sets", [])):],
+                execute("sweep", "the plan", f"--board={folder}/board.yaml", f"--out={folder}/points.db",
+                        *words[1 + len(body.get("sets", [])):],
                         arrays={"plan.yaml": numpy.frombuffer(plan.encode(), numpy.uint8)})
                 return execute("report", f"{folder}/points.db", "--json")
             finally:
@@ -439,17 +424,13 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         self._stream(work)
 
     def _picture(self, length):
-        if not self.server.uploads.acquire(blocking=False):
-            raise _Error(503, f"{UPLOADS} pictures are being sent: try again")
-        try:
-            name = self.server.keep(self.rfile, length)
-        finally:
-            self.server.uploads.release()
+        name = self.server.keep(self.rfile, length)
         self._is_read = True
         self._answer(200, json.dumps({"id": name}))
 
 
-class _Server(http.server.ThreadingHTTPServer):
+class _Server(socketserver.ThreadingTCPServer):
+    allow_reuse_address = daemon_threads = True
     request_queue_size = 128
 
     def __init__(self, arguments, page, scratch):
@@ -458,7 +439,7 @@ class _Server(http.server.ThreadingHTTPServer):
         origin = (arguments.origin or f"http://localhost:{port}").lower()
         self.origins = {f"http://127.0.0.1:{port}", f"http://localhost:{port}", origin}
         self.hosts = {each.partition("//")[2] for each in self.origins}
-        self.cookie, self.secret, self.token = f"stereotlm_{port}", *(secrets.token_urlsafe(32) for _ in "12")
+        self.cookie, self.token = f"stereotlm_{port}={secrets.token_urlsafe(32)}", secrets.token_urlsafe(32)
         self.url = f"http://127.0.0.1:{port}/?token={self.token}"
         self.page, self.folder, self.scratch = page, os.getcwd(), scratch
         self.calibration = arguments.calibration
@@ -466,10 +447,9 @@ class _Server(http.server.ThreadingHTTPServer):
         self.quick, self.long = queue.LifoQueue(), queue.LifoQueue()  # those that are free
         for number, worker in enumerate(self.workers):
             (self.quick if number < QUICK else self.long).put(worker)
-        self.uploads = threading.BoundedSemaphore(UPLOADS)
         self._connections = threading.BoundedSemaphore(CONNECTIONS)
         self._pictures = {}  # id -> bytes, the oldest first
-        self._lock = threading.Lock()
+        self._lock, self._upload = threading.Lock(), threading.Lock()
         none = "'none'"
         scripts = [f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
                    for script in re.findall(r"<script\b[^>]*>(.*?)</script>", page, re.DOTALL)]
@@ -480,9 +460,6 @@ class _Server(http.server.ThreadingHTTPServer):
                 f"frame-ancestors 'self' http://127.0.0.1:* http://localhost:* {origin}",
             "X-Content-Type-Options": "nosniff", "Cache-Control": "no-store",
             "Referrer-Policy": "no-referrer", "Cross-Origin-Resource-Policy": "same-origin"}
-
-    def server_bind(self):
-        socketserver.TCPServer.server_bind(self)  # that of HTTPServer asks for the name of this machine
 
     def process_request(self, request, client_address):
         if self._connections.acquire(blocking=False):
@@ -519,16 +496,16 @@ class _Server(http.server.ThreadingHTTPServer):
         """Reads a picture of so many bytes. Returns its id. The oldest go when there are too many."""
         name = secrets.token_hex(8)
         path = os.path.join(self.scratch, name)
-        try:
-            with open(path, "xb") as file:
+        with self._upload, open(path, "xb") as file:  # one at a time: few are partly there
+            try:
                 while file.tell() < length:
                     data = source.read(min(length - file.tell(), 1 << 20))
                     if not data:
                         raise _Gone
                     file.write(data)
-        except BaseException:
-            os.unlink(path)
-            raise
+            except BaseException:
+                os.unlink(path)
+                raise
         with self._lock:
             self._pictures[name] = length
             while len(self._pictures) > PICTURES or sum(self._pictures.values()) > PICTURE_BYTES:
@@ -539,9 +516,8 @@ class _Server(http.server.ThreadingHTTPServer):
 
     def path(self, key, name):
         """The path of a picture."""
-        with self._lock:
-            if name not in self._pictures:
-                raise _refusal(key, name, "no picture of this id is kept: send it again")
+        if name not in self._pictures:
+            _refuse(key, name, "no picture of this id is kept: send it again")
         return os.path.join(self.scratch, name)
 
 
