@@ -69,9 +69,9 @@ Json document_of(const std::string& name, const platform::BoardConfig* board,
   document["values"] = values_document(*board);
   const std::vector<std::string> presets = platform::preset_names();
   const bool is_preset = std::find(presets.begin(), presets.end(), name) != presets.end();
-  const auto [preset, sets] = is_preset
-                                  ? std::pair(name, platform::sets_between(platform::load_board(name), *board))
-                                  : platform::sets_of_nearest_preset(*board);
+  const auto [preset, sets] =
+      is_preset ? std::pair(name, platform::sets_between(platform::load_board(name), *board))
+                : platform::sets_of_nearest_preset(*board);
   document["preset"] = preset;
   document["sets"] = sets;
   return document;

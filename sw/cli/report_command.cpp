@@ -44,8 +44,7 @@ struct ReportOptions : Options {
 
   Option inputs = Option(this, "INPUT", "...", "One run or database, or two runs",
                          {required("a folder of run --out, two of them, or a database")}, Takes::kList);
-  Option out =
-      Option(this, "--out", "F.html", "The page to write", {ends_in(".html")});
+  Option out = Option(this, "--out", "F.html", "The page to write", {ends_in(".html")});
   Option json = Option(this, "--json", "", "Print the data of the page as JSON, and write no page");
   Option quick = Option(this, "--quick", "", "Simulate nothing: no gain of the changes");
 };
@@ -135,10 +134,11 @@ int report(const ReportOptions& options) {
   process::catch_interrupts();
   process::Problems problems;
   std::optional<files::OutputFile> file;
-  if (options.out.is_given()) problems.attempt("--out ", [&] {
-    file.emplace(options.out.text(),
-                 files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
-  });
+  if (options.out.is_given())
+    problems.attempt("--out ", [&] {
+      file.emplace(options.out.text(),
+                   files::marked_kind("page of stereotlm report", {{0, report::page_mark()}}));
+    });
   std::optional<Json> data = data_of(options, problems);
   const std::string changes = data ? data->value(Json::json_pointer("/run/knobs/interrupted"), "") : "";
   if (process::interrupted() && changes.empty()) return interrupted("no page is written");

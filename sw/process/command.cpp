@@ -159,8 +159,8 @@ CommandEnd run_script(const std::string& script, const std::vector<std::string>&
       fmt::format("'{}', which draws the figures: cannot be started: {}", python, cause));
 }
 
-void become_python(
-    const std::string& module, const std::vector<std::string>& arguments, const std::string& page) {
+void become_python(const std::string& module, const std::vector<std::string>& arguments,
+                   const std::string& page) {
   const std::filesystem::path folder = installed_path(STEREOTLM_MODULE_FOLDER);
   if (!std::filesystem::is_directory(folder / "stereotlm"))
     throw std::runtime_error(
@@ -170,9 +170,15 @@ void become_python(
   if (descriptor < 0) fail(errno, "memfd_create");
   if (!write_all(descriptor, page.data(), page.size())) fail(errno, "write");
   std::vector<std::string> words = {
-      kPython, "-E", "-s", "-B", "-c",
+      kPython,
+      "-E",
+      "-s",
+      "-B",
+      "-c",
       fmt::format("import sys; sys.path.insert(0, sys.argv.pop(1)); from {} import main; main()", module),
-      folder.string(), "--page", std::to_string(descriptor),
+      folder.string(),
+      "--page",
+      std::to_string(descriptor),
       "--program=" + std::filesystem::read_symlink("/proc/self/exe").string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;

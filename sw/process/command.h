@@ -47,7 +47,7 @@ CommandEnd run_script(
 // Becomes the main() of a module of the Python package that is installed with the program. It gets the
 // arguments, and `--page N`: a descriptor from which it reads `page`. Throws std::runtime_error if there is
 // no such package, and std::system_error.
-[[noreturn]] void become_python(
-    const std::string& module, const std::vector<std::string>& arguments, const std::string& page);
+[[noreturn]] void become_python(const std::string& module, const std::vector<std::string>& arguments,
+                                const std::string& page);
 
 }  // namespace stereotlm::process

@@ -33,8 +33,8 @@ struct RunInput {
   bool camera = true;                 // --source camera, else preloaded
   bool fast = true;                   // --fidelity fast, else cycle
   bool timing_only = false;
-  std::uint64_t recorded_frames = 0;            // whose waits are written to the folder; 0: none
-  bool json = false;                            // --json
+  std::uint64_t recorded_frames = 0;  // whose waits are written to the folder; 0: none
+  bool json = false;                  // --json
   // Gets whole lines of each file that the run records (sw/report/README.md); null: it records nothing.
   std::function<void(const std::string& name, const std::string& text)> record;
   std::unique_ptr<trace::Trace> trace;          // null: no --trace

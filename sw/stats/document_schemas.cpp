@@ -157,14 +157,15 @@ Schema check_schema() {
           {"pins?", from_one(), "of the FPGA that the board takes"},
           {"values?", map_to({{"type", {"integer", "number", "string", "array", "object"}}}),
            "the value of each key, by its path; each bank has all its values"},
-          {"preset?", text(), "BOARD if it is one, else the nearest: fewest values of --set make the board of it"},
+          {"preset?", text(),
+           "BOARD if it is one, else the nearest: fewest values of --set make the board of it"},
           {"sets?", list_of(text()), "these: KEY=VALUE"},
       });
   schema["if"] = {{"properties", {{"ok", {{"const", true}}}}}};
-  schema["then"] = {
-      {"properties", {{"problems", {{"maxItems", 0}}}}},
-      {"required",
-       {"image", "window", "disparities", "banks", "clock_mhz", "device", "fits", "pins", "values", "preset", "sets"}}};
+  schema["then"] = {{"properties", {{"problems", {{"maxItems", 0}}}}},
+                    {"required",
+                     {"image", "window", "disparities", "banks", "clock_mhz", "device", "fits", "pins",
+                      "values", "preset", "sets"}}};
   schema["else"] = {{"properties", {{"problems", {{"minItems", 1}}}}}};
   return schema;
 }

@@ -22,10 +22,10 @@
 #include "sw/files/text_forms.h"
 #include "sw/files/whole_file.h"
 #include "sw/media/encode.h"
+#include "sw/media/load.h"
 #include "sw/report/chart/memory_chart.h"
 #include "sw/report/page_data/page_data.h"
 #include "sw/report/page_data/recording_data.h"
-#include "sw/media/load.h"
 #include "sw/runs/explanation.h"
 #include "sw/stats/stats_json.h"
 
@@ -221,8 +221,7 @@ Json run_data(const runs::RecordedRun& run, const platform::Tables& tables) {
 
 Json run_data(const runs::RunInput& input, const platform::Statistics& statistics,
               const stats::TableExtras& extras, const runs::Result& last, const RecordingData* recording) {
-  Json data =
-      figures_data(input.board, input.tables, statistics, stats::run_document(statistics, extras));
+  Json data = figures_data(input.board, input.tables, statistics, stats::run_document(statistics, extras));
   data["config_yaml"] = platform::to_yaml(input.board);
   if (recording != nullptr) data["recording"] = recording->json();
   if (input.timing_only) return data;

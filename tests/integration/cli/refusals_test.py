@@ -19,7 +19,7 @@ import completion  # noqa: E402
 
 COMMANDS = (
     "run check boards keys bounds explain calibrate sweep optimise merge allocate plot conflicts diff "
-    "diagram report rtl worker"
+    "diagram report rtl serve worker"
 ).split()
 SMALL_KEYS = "{image.width: 32, image.height: 24}"
 NO_INTEGERS = ("-1", "1.5", "x", "18446744073709551616")

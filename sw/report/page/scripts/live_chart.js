@@ -1,13 +1,13 @@
 // The memory chart of the live page: its buffers are dragged into other banks, or carried there by keys.
 import {h, s} from './dom.js';
 import {bankText, fixed} from './format.js';
-import {addMemory, linksOf} from './memory.js';
 import {bankNames, newBankName} from './live_state.js';
+import {addMemory, linksOf} from './memory.js';
 import {hideTooltip, mark} from './tooltip.js';
 
-const kDrags = 4;            // pixels that the pointer moves before a buffer is dragged
-const kLeastChange = 0.05;   // MB/s
-const kMostChanges = 6;      // that are named
+const kDrags = 4;           // pixels that the pointer moves before a buffer is dragged
+const kLeastChange = 0.05;  // MB/s
+const kMostChanges = 6;     // that are named
 const kNewBank = '#new';
 
 const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
@@ -36,7 +36,8 @@ export function makeChart({place, drop}) {
   const element = h('div', {class: 'live-chart'}, group, target, status, changes);
   const ghost = h('div', {class: 'ghost', hidden: true});
   document.body.append(ghost);
-  const kIdle = 'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
+  const kIdle =
+      'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
   let run = null;
   let baseline = null;  // the drawing with which links are compared
   let held = null;      // {key, label, from, bank, x, y, isDragged, byKeys}
@@ -79,7 +80,14 @@ export function makeChart({place, drop}) {
     event.preventDefault();
     buffer.focus({preventScroll: true});
     const from = bankOf(buffer);
-    held = {key: buffer.dataset.key, label: labelOf(buffer), from, bank: from, x: event.clientX, y: event.clientY};
+    held = {
+      key: buffer.dataset.key,
+      label: labelOf(buffer),
+      from,
+      bank: from,
+      x: event.clientX,
+      y: event.clientY
+    };
   });
   addEventListener('pointermove', event => {
     if (!held || held.byKeys) return;
@@ -112,7 +120,8 @@ export function makeChart({place, drop}) {
       if (held) return end(true);
       const from = bankOf(buffer);
       held = {key: buffer.dataset.key, label: labelOf(buffer), from, bank: from, byKeys: true};
-      status.textContent = `${held.label} is held: choose a bank with the arrows, then Enter. Escape: leave it.`;
+      status.textContent =
+          `${held.label} is held: choose a bank with the arrows, then Enter. Escape: leave it.`;
     } else if (held && event.key.startsWith('Arrow')) {
       take();
       const banks = [...bankNames(run.settings), kNewBank];
@@ -121,19 +130,24 @@ export function makeChart({place, drop}) {
     }
   }, true);
   group.addEventListener('focusout', () => held?.byKeys && setTimeout(() => {
-    if (held?.byKeys && !group.contains(document.activeElement)) end(false);
-  }));
+                                             if (held?.byKeys && !group.contains(document.activeElement))
+                                               end(false);
+                                           }));
 
   function listChanges(links) {
-    const texts = links.slice(0, kMostChanges).map(([name, a, b]) => `${name} ${fixed(a, 1)} → ${fixed(b, 1)}`);
-    changes.textContent = links.length === 0 ? '' : `Links that change, MB/s: ${texts.join('; ')}${
-        links.length > kMostChanges ? `; and ${links.length - kMostChanges} more` : ''}.`;
+    const texts =
+        links.slice(0, kMostChanges).map(([name, a, b]) => `${name} ${fixed(a, 1)} → ${fixed(b, 1)}`);
+    changes.textContent = links.length === 0 ?
+        '' :
+        `Links that change, MB/s: ${texts.join('; ')}${
+            links.length > kMostChanges ? `; and ${links.length - kMostChanges} more` : ''}.`;
   }
 
   // Draws the run. While a buffer is held the drawing stays as it is, and only the changed links are named.
   // `with_`: the run with which links are compared; null: none. `name`: of that.
   function show(its, with_, name) {
-    const parse = any => any && new DOMParser().parseFromString(any.memory_chart, 'image/svg+xml').documentElement;
+    const parse = any =>
+        any && new DOMParser().parseFromString(any.memory_chart, 'image/svg+xml').documentElement;
     if (held) {
       waiting = [its, with_, name];
       return listChanges(changedLinks(parse(run), parse(its)));
@@ -148,21 +162,29 @@ export function makeChart({place, drop}) {
     group.replaceChildren();
     const links = changedLinks(baseline, parse(run));
     const before = ratesOf(baseline);
-    addMemory(group, [run], link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
+    addMemory(
+        group, [run],
+        link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
     const svg = group.querySelector('svg.memory-chart');
     const changed = new Set(links.map(([link]) => link));
     for (const link of linksOf(svg)) link.element.classList.toggle('changed', changed.has(link.name));
     for (const buffer of svg.querySelectorAll('.buffer')) {
       const box = buffer.getBBox();
       buffer.prepend(s('rect', {
-        x: box.x - 4, y: box.y - 1, width: box.width + 8, height: box.height + 2, rx: 3, class: 'handle'
+        x: box.x - 4,
+        y: box.y - 1,
+        width: box.width + 8,
+        height: box.height + 2,
+        rx: 3,
+        class: 'handle'
       }));
       mark(buffer, [labelOf(buffer), bankText(bankOf(buffer)), 'drag it, or press Enter, to move it']);
       buffer.setAttribute('role', 'button');
     }
     if (left !== undefined) group.querySelector('.memory').scrollLeft = left;
     group.style.minHeight = '';
-    if (hadFocus && focused) group.querySelector(`.buffer[data-key="${CSS.escape(focused)}"]`)?.focus({preventScroll: true});
+    if (hadFocus && focused)
+      group.querySelector(`.buffer[data-key="${CSS.escape(focused)}"]`)?.focus({preventScroll: true});
     kept = null;
     listChanges(links);
   }

@@ -18,7 +18,10 @@ function controlFor(path, schema, change) {
   }
   if (forms.length === 1 && (only.type === 'integer' || only.type === 'number')) {
     return h('input', {
-      ...attributes, type: 'number', min: only.minimum, max: only.maximum,
+      ...attributes,
+      type: 'number',
+      min: only.minimum,
+      max: only.maximum,
       step: only.type === 'number' ? 'any' : only.multipleOf ?? 1
     });
   }
@@ -32,9 +35,9 @@ export function makeKeys({keys, schema}, set) {
   const host = h('div', {class: 'keys'});
   const problems = h('ul', {class: 'problems', role: 'alert'});
   const search = h('input', {type: 'search', id: 'search-keys-live', input: () => filter()});
-  const element = h('section', {class: 'card', id: 'keys', 'aria-label': 'Keys of the board'},
-                    h('h2', null, 'The keys'), problems,
-                    h('label', {class: 'search'}, 'Search ', search), host);
+  const element =
+      h('section', {class: 'card', id: 'keys', 'aria-label': 'Keys of the board'}, h('h2', null, 'The keys'),
+        problems, h('label', {class: 'search'}, 'Search ', search), host);
   let settings = [];
 
   function filter() {
@@ -54,10 +57,16 @@ export function makeKeys({keys, schema}, set) {
     const control = controlFor(path, schema[schemaPath(path)], text => set([[path, text]]));
     control.setAttribute('aria-describedby', `about-${path}`);
     const problem = h('p', {class: 'bad note', hidden: true});
-    const name = path.startsWith('ssram.banks.') ? path.split('.').slice(3).join('.') : path.split('.').slice(1).join('.');
-    const row = h('div', {class: 'key', 'data-key': path},
-                  h('label', {for: `key-${path}`}, name || path), h('span', {class: 'value'}, control, unit && ` ${unit}`),
-                  h('p', {class: 'note', id: `about-${path}`}, `${capital(meaning)}. ${range}`), problem);
+    const name = path.startsWith('ssram.banks.') ? path.split('.').slice(3).join('.') :
+                                                   path.split('.').slice(1).join('.');
+    const row =
+        h('div', {class: 'key', 'data-key': path},
+          h('label',
+            {for: `key-${path}`
+            },
+            name || path),
+          h('span', {class: 'value'}, control, unit && ` ${unit}`),
+          h('p', {class: 'note', id: `about-${path}`}, `${capital(meaning)}. ${range}`), problem);
     rows.set(path, {control, problem, row});
     return row;
   }
@@ -104,7 +113,8 @@ export function makeKeys({keys, schema}, set) {
     // Shows each problem beside its key, and all of them above.
     refuse(all) {
       for (const {problem} of rows.values()) problem.hidden = true;
-      problems.replaceChildren(...all.map(({place, message}) => h('li', null, message.includes(' ') ? message : `${place}: ${message}`)));
+      problems.replaceChildren(...all.map(
+          ({place, message}) => h('li', null, message.includes(' ') ? message : `${place}: ${message}`)));
       for (const {key, place, rule} of all) {
         const row = rows.get(key) ?? rows.get(place?.replace('--set ', ''));
         if (!row) continue;

@@ -42,7 +42,8 @@ const post = (path, body, signal) => send(path, 'POST', 'application/json', JSON
 const bodyOf = ({preset, sets, calibration}, more = {}) =>
     ({board: preset, sets, ...calibration ? {calibration} : {}, ...more});
 
-export const ask = async (path, board, more, signal) => documentOf(await post(path, bodyOf(board, more), signal));
+export const ask = async (path, board, more, signal) =>
+    documentOf(await post(path, bodyOf(board, more), signal));
 
 export const sendPicture = async file =>
     (await documentOf(await send('picture', 'PUT', 'application/octet-stream', file))).id;
@@ -54,7 +55,7 @@ export const boardFiles = async () => (await documentOf(await checked(await fetc
 export async function askLong(path, board, more, signal, progress) {
   const response = await post(path, bodyOf(board, more), signal);
   const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
-  for (let text = ''; ;) {
+  for (let text = '';;) {
     const {done, value} = await reader.read();
     text += value ?? '';
     const lines = text.split('\n');

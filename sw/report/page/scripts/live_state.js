@@ -10,8 +10,7 @@ const isWithin = (key, path) => `${key}.`.startsWith(`${path}.`);
 // A board: {preset, sets: [[key, YAML], ..], calibration}. It is never changed.
 export function withSets(board, changes) {
   let sets = board.sets;
-  for (const [path, text] of changes)
-    sets = [...sets.filter(([key]) => !isWithin(key, path)), [path, text]];
+  for (const [path, text] of changes) sets = [...sets.filter(([key]) => !isWithin(key, path)), [path, text]];
   return {...board, sets};
 }
 
@@ -41,7 +40,8 @@ export function commandOf({preset, sets, calibration}, source, frames) {
     `stereotlm run ${preset}`, ...sets.map(([key, text]) => `--set ${quoted(`${key}=${text}`)}`),
     calibration && `--calibration ${quoted(calibration)}`, source === 'preloaded' && '--source preloaded',
     `--frames ${frames} --timing-only`
-  ].filter(Boolean).join(' ');
+  ].filter(Boolean)
+      .join(' ');
 }
 
 // The boards that were shown, one after the other. `changed(board)` is called when another one is shown.
@@ -91,8 +91,8 @@ export function moveOf(settings, buffer, bank) {
   return [key, written(Array.isArray(value) ? list : list[0])];
 }
 
-export const bankNames = settings => [...new Set(settings.map(({key}) => /^ssram\.banks\.([^.]+)\./.exec(key)?.[1])
-                                                     .filter(Boolean))];
+export const bankNames = settings => [...new Set(
+    settings.map(({key}) => /^ssram\.banks\.([^.]+)\./.exec(key)?.[1]).filter(Boolean))];
 
 // A name that no bank has.
 export function newBankName(settings) {

@@ -12,9 +12,12 @@ const field = (label, control) => h('label', null, `${label} `, control);
 // The disparities of the board on a pair, beside the truth, with the waits over them.
 export function makePictures(boardNow, fail) {
   const seed = h('input', {type: 'number', id: 'seed', min: 0, step: 1, value: 1});
-  const files = ['left', 'right', 'truth'].map(side => h('input', {type: 'file', accept: 'image/*,.pfm,.pgm', id: `file-${side}`}));
+  const files = ['left', 'right', 'truth'].map(
+      side => h('input', {type: 'file', accept: 'image/*,.pfm,.pgm', id: `file-${side}`}));
   const scale = h('input', {type: 'number', id: 'truth-scale', min: 0, step: 'any', value: 1, size: 4});
-  const fit = h('select', {id: 'fit'}, [['', 'as they are'], ['crop', 'crop'], ['pad', 'pad']].map(([value, text]) => h('option', {value}, text)));
+  const fit = h('select', {id: 'fit'}, [
+    ['', 'as they are'], ['crop', 'crop'], ['pad', 'pad']
+  ].map(([value, text]) => h('option', {value}, text)));
   const shown = h('div');
   const state = h('p', {class: 'note', role: 'status'});
   async function show(pictures) {
@@ -28,13 +31,20 @@ export function makePictures(boardNow, fail) {
       const {accuracy, disparities_percent: answered} = run.stats;
       const texts = [
         `${fixed(answered, 2)} % of the pixels have a disparity`,
-        accuracy && `of the answers ${fixed(accuracy.bad_1_percent, 2)} % are off by more than 1, ${
-            fixed(accuracy.bad_2_percent, 2)} % by more than 2; ${percent(accuracy.answered_percent / 100)} are answered`
+        accuracy &&
+            `of the answers ${fixed(accuracy.bad_1_percent, 2)} % are off by more than 1, ${
+                fixed(
+                    accuracy.bad_2_percent,
+                    2)} % by more than 2; ${percent(accuracy.answered_percent / 100)} are answered`
       ].filter(Boolean);
       state.textContent = `${texts.join('; ')}.`;
       if (truth) {
         addPicture(group, {
-          id: 'truth', title: 'The truth, beside the disparities', layers: [], frames: 1, names: ['truth', 'disparities'],
+          id: 'truth',
+          title: 'The truth, beside the disparities',
+          layers: [],
+          frames: 1,
+          names: ['truth', 'disparities'],
           pictures: [{url: truth, disparities}, {url: disparity, disparities}]
         });
       }
@@ -57,20 +67,33 @@ export function makePictures(boardNow, fail) {
   }
   return h(
       'section', {class: 'card', 'aria-label': 'Pictures'},
-      controls(field('synthetic scene, seed', seed), button('Show the scene', () => show({synthetic: Number(seed.value)}), {id: 'show-scene'})),
-      controls(files.map((input, i) => field(['left', 'right', 'truth'][i], input)), field('levels a disparity', scale), field('size', fit),
-               button('Show the pair', showFiles, {id: 'show-pair'})),
-      note('Pictures have the size of the board\'s images, or are cropped or padded to it. They stay on this machine.'),
+      controls(
+          field('synthetic scene, seed', seed),
+          button('Show the scene', () => show({synthetic: Number(seed.value)}), {id: 'show-scene'})),
+      controls(
+          files.map((input, i) => field(['left', 'right', 'truth'][i], input)),
+          field('levels a disparity', scale), field('size', fit),
+          button('Show the pair', showFiles, {id: 'show-pair'})),
+      note(
+          'Pictures have the size of the board\'s images, or are cropped or padded to it. They stay on this machine.'),
       state, shown);
 }
 
 // A sweep of one or two keys. now(): [board, source, frames].
 export function makeSweep({keys}, now, open, fail) {
-  const listed = h('datalist', {id: 'all-keys'}, keys.map(({key, meaning}) => h('option', {value: key}, meaning)));
-  const lines = [1, 2].map(i => [
-    h('input', {type: 'text', list: 'all-keys', id: `sweep-key-${i}`, value: i === 1 ? 'matcher.window' : '', size: 24}),
-    h('input', {type: 'text', id: `sweep-values-${i}`, value: i === 1 ? '3, 5, 7, 9, 11' : '', size: 24})
-  ]);
+  const listed =
+      h('datalist', {id: 'all-keys'}, keys.map(({key, meaning}) => h('option', {value: key}, meaning)));
+  const lines = [1, 2].map(
+      i =>
+          [h('input', {
+             type: 'text',
+             list: 'all-keys',
+             id: `sweep-key-${i}`,
+             value: i === 1 ? 'matcher.window' : '',
+             size: 24
+           }),
+           h('input',
+             {type: 'text', id: `sweep-values-${i}`, value: i === 1 ? '3, 5, 7, 9, 11' : '', size: 24})]);
   const bar = h('progress', {hidden: true, 'aria-label': 'The points of the sweep'});
   const state = h('span', {role: 'status'});
   const shown = h('div');
@@ -79,18 +102,24 @@ export function makeSweep({keys}, now, open, fail) {
     controller?.abort();
     controller = new AbortController();
     const vary = Object.fromEntries(
-        lines.map(([key, values]) => [key.value.trim(), values.value.split(/,(?![^[{]*[\]}])/).map(word => word.trim()).filter(Boolean)])
+        lines
+            .map(
+                ([key, values]) =>
+                    [key.value.trim(),
+                     values.value.split(/,(?![^[{]*[\]}])/).map(word => word.trim()).filter(Boolean)])
             .filter(([key]) => key));
     const [board, source, frames] = now();
     const varied = Object.keys(vary);
     const fixedSets = board.sets.filter(([key]) => !varied.includes(key));
     bar.hidden = false;
     try {
-      const {database} = await askLong('sweep', {...board, sets: fixedSets}, {source, frames, vary}, controller.signal, (done, of, text) => {
-        bar.max = of;
-        bar.value = done;
-        state.textContent = text;
-      });
+      const {database} = await askLong(
+          'sweep', {...board, sets: fixedSets}, {source, frames, vary}, controller.signal,
+          (done, of, text) => {
+            bar.max = of;
+            bar.value = done;
+            state.textContent = text;
+          });
       state.textContent = '';
       shown.replaceChildren();
       showDatabase(shown, {database: {...database, path: 'the sweep'}}, open);
@@ -104,7 +133,9 @@ export function makeSweep({keys}, now, open, fail) {
   return h(
       'section', {class: 'card', 'aria-label': 'Sweep'}, listed,
       lines.map(([key, values], i) => controls(field(i ? 'and key' : 'key', key), field('values', values))),
-      controls(button('Sweep', start, {id: 'start-sweep'}), button('Stop', () => controller?.abort()), bar, state),
-      note('Values with commas between them. The shown view says whether the core alone or the computer is swept.'),
+      controls(
+          button('Sweep', start, {id: 'start-sweep'}), button('Stop', () => controller?.abort()), bar, state),
+      note(
+          'Values with commas between them. The shown view says whether the core alone or the computer is swept.'),
       shown);
 }

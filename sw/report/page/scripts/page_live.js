@@ -22,14 +22,20 @@ const kFigures = [
   [
     'computer frames/s', 'camera', run => rateOf(run).now,
     (number, run) => rateWith(number, run?.stats.frames_per_second.steady_uncertainty),
-    run => [rateOf(run).kind + lossText(lostPixels(run)), exactText(run), boundNote(run)].filter(Boolean).join('; ')
+    run => [rateOf(run).kind + lossText(lostPixels(run)), exactText(run), boundNote(run)]
+               .filter(Boolean)
+               .join('; ')
   ],
   [
     'slices %', 'preloaded', run => run.area.slices_percent, number => fixed(number, 2),
     run => `${whole(run.area.slices)} slices, ${count(run.area.block_rams, 'block RAM')}, ${
-        count(run.area.multipliers, 'multiplier')} of the ${run.area.device.name}${run.area.fits ? '' : ': does not fit'}`
+        count(run.area.multipliers, 'multiplier')} of the ${run.area.device.name}${
+        run.area.fits ? '' : ': does not fit'}`
   ],
-  ['pins', 'preloaded', run => run.pins, whole, run => `${run.banks_used} of ${count(run.banks.length, 'bank')} used`],
+  [
+    'pins', 'preloaded', run => run.pins, whole,
+    run => `${run.banks_used} of ${count(run.banks.length, 'bank')} used`
+  ],
   [
     'mJ a frame', 'preloaded', run => run.stats.energy.memory_mj_per_frame, number => fixed(number, 2),
     run => `the memories alone, ${fixed(run.stats.energy.megabytes_per_frame, 1)} MB a frame`
@@ -46,9 +52,11 @@ const exactText = ({stats: {frames_per_second: rates}}) => rates.exact !== undef
 function differenceTable(a, now) {
   const flat = (value, path = '') => Object.entries(value).flatMap(
       ([key, its]) => its !== null && typeof its === 'object' ? flat(its, `${path}${its.name ?? key}.`) :
-          typeof its === 'number' ? [[path + key, its]] : []);
+          typeof its === 'number' ? [[path + key, its]] :
+                                    []);
   const before = new Map(flat(a.stats));
-  const rows = flat(now.stats).filter(([path, its]) => before.has(path) && before.get(path) !== its)
+  const rows = flat(now.stats)
+                   .filter(([path, its]) => before.has(path) && before.get(path) !== its)
                    .map(([path, its]) => [path, before.get(path), its, its - before.get(path)]);
   return [['figure', 'A', 'now', 'difference'], rows];
 }
@@ -65,7 +73,8 @@ async function reportOf(data) {
   return `<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n` +
       `<meta name="generator" content="stereotlm report">\n` +
       `<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>stereotlm report</title>\n` +
-      `<link rel="icon" href="data:,">\n<style>\n${style}</style>\n</head>\n<body>\n<main id="page"></main>\n` +
+      `<link rel="icon" href="data:,">\n<style>\n${
+             style}</style>\n</head>\n<body>\n<main id="page"></main>\n` +
       `<script type="text/plain" id="data">${btoa(letters.join(''))}</script>\n` +
       `<script type="module">\n${script}</script>\n</body>\n</html>\n`;
 }
@@ -73,12 +82,12 @@ async function reportOf(data) {
 export function showLive(page, {live, database, version}) {
   const frames = {preloaded: live.core_frames, camera: live.computer_frames};
   const first = boardOf(location.hash) ?? {...live, sets: live.sets.map(splitSet)};
-  const history = new History(
-      {preset: first.preset, sets: first.sets, calibration: first.calibration}, () => changed());
+  const history =
+      new History({preset: first.preset, sets: first.sets, calibration: first.calibration}, () => changed());
   const runs = {preloaded: null, camera: null};  // the newest answers: {board, run}
   let view = 'preloaded';
-  let shown = null;     // the board that is asked for: that of the history, or while a buffer is dragged another
-  let settled = {};     // of `runs` those of boards of the history
+  let shown = null;  // the board that is asked for: that of the history, or while a buffer is dragged another
+  let settled = {};  // of `runs` those of boards of the history
   let previous = {};    // the same before the last change
   let pinned = null;    // A: {board, runs}
   let gains = null;     // what `explain` has found: {address, source, knobs}
@@ -103,35 +112,59 @@ export function showLive(page, {live, database, version}) {
   const explain = button('What gains most?', askGains, {id: 'explain'});
   const boards = h('select', {id: 'boards', change: event => openNamed(event.target)});
   const file = h('input', {
-    type: 'file', accept: '.yaml', id: 'board-file', 'aria-label': 'Open a board file',
+    type: 'file',
+    accept: '.yaml',
+    id: 'board-file',
+    'aria-label': 'Open a board file',
     change: async event => event.target.files[0] && openYaml(await event.target.files[0].text())
   });
-  const saveAs = h('input', {type: 'text', id: 'save-name', value: 'board.yaml', size: 14, 'aria-label': 'Name of the file'});
+  const saveAs =
+      h('input',
+        {type: 'text', id: 'save-name', value: 'board.yaml', size: 14, 'aria-label': 'Name of the file'});
   const tools = controls(
-      undo, redo, h('label', null, 'board ', boards), h('label', null, 'shown ', choice('view', kViews, view, chosen => {
-                                                           view = chosen;
-                                                           draw();
-                                                         })),
-      pin, explain);
+      undo, redo, h('label', null, 'board ', boards),
+      h('label', null, 'shown ', choice('view', kViews, view, chosen => {
+          view = chosen;
+          draw();
+        })), pin, explain);
   const exports = folded(
       'Open, save, share',
       controls(
           h('label', null, 'open a file ', file),
-          button('Copy link', async event => {
-            await navigator.clipboard.writeText(location.href).catch(() => {});
-            event.target.textContent = 'Copied: it is the address of this page';
-          }, {id: 'copy-link'}),
-          button('Board as YAML', () => download(`${fileName(current().run.stats.board)}.yaml`, 'text/yaml', current().run.config_yaml), {id: 'yaml'}),
-          button('Report', async () => download('report.html', 'text/html', await reportOf({
-            format: 2, version, kind: 'run', text: '', run: {folder: 'the live board', command: commandOf(history.board, view, frames[view]), ...current().run, knobs: current().run.knobs}
-          })), {id: 'report'}),
+          button(
+              'Copy link',
+              async event => {
+                await navigator.clipboard.writeText(location.href).catch(() => {});
+                event.target.textContent = 'Copied: it is the address of this page';
+              },
+              {id: 'copy-link'}),
+          button(
+              'Board as YAML',
+              () => download(
+                  `${fileName(current().run.stats.board)}.yaml`, 'text/yaml', current().run.config_yaml),
+              {id: 'yaml'}),
+          button(
+              'Report', async () => download('report.html', 'text/html', await reportOf({
+                                               format: 2,
+                                               version,
+                                               kind: 'run',
+                                               text: '',
+                                               run: {
+                                                 folder: 'the live board',
+                                                 command: commandOf(history.board, view, frames[view]),
+                                                 ...current().run,
+                                                 knobs: current().run.knobs
+                                               }
+                                             })),
+              {id: 'report'}),
           saveAs, button('Save in the folder', save, {id: 'save'})),
       command);
   const board = h('div', {class: 'live'}, h('div', {class: 'cards'}, chart.element), keys.element);
   const pictures = makePictures(() => history.board, openError);
   const sweep = makeSweep(live, () => [history.board, view, frames[view]], openYaml, openError);
   const tabs = [
-    ['board', 'The board', [board, gainsHost, cards]], ['pictures', 'Pictures', [pictures]], ['sweep', 'Sweep', [sweep]]
+    ['board', 'The board', [board, gainsHost, cards]], ['pictures', 'Pictures', [pictures]],
+    ['sweep', 'Sweep', [sweep]]
   ];
   if (database) {
     const points = h('div');
@@ -139,8 +172,14 @@ export function showLive(page, {live, database, version}) {
     showDatabase(points, {database}, openYaml);
     points.querySelector('.head .theme').remove();
   }
-  const panels = tabs.map(([id, , children]) => h('div', {id: `tab-${id}`, role: 'tabpanel', 'aria-labelledby': `to-${id}`}, children));
-  const buttons = tabs.map(([id, text], i) => h('button', {type: 'button', role: 'tab', id: `to-${id}`, 'aria-controls': `tab-${id}`, click: () => open(i)}, text));
+  const panels = tabs.map(
+      ([id, , children]) =>
+          h('div', {id: `tab-${id}`, role: 'tabpanel', 'aria-labelledby': `to-${id}`}, children));
+  const buttons = tabs.map(
+      ([id, text], i) =>
+          h('button',
+            {type: 'button', role: 'tab', id: `to-${id}`, 'aria-controls': `tab-${id}`, click: () => open(i)},
+            text));
   function open(chosen) {
     panels.forEach((panel, i) => panel.toggleAttribute('hidden', i !== chosen));
     buttons.forEach((tab, i) => {
@@ -148,20 +187,31 @@ export function showLive(page, {live, database, version}) {
       tab.tabIndex = i === chosen ? 0 : -1;
     });
   }
-  const list = h('div', {class: 'tabs', role: 'tablist', keydown: event => {
-    const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
-    if (!step) return;
-    const next = (buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length;
-    open(next);
-    buttons[next].focus();
-  }}, buttons);
+  const list =
+      h('div', {
+        class: 'tabs',
+        role: 'tablist',
+        keydown: event => {
+          const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
+          if (!step) return;
+          const next = (buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length;
+          open(next);
+          buttons[next].focus();
+        }
+      },
+        buttons);
   page.append(tools, exports, message, figures, list, ...panels);
   open(database && !boardOf(location.hash) ? tabs.length - 1 : 0);
   boards.append(
       h('option', {value: ''}, 'choose'),
       h('optgroup', {label: 'presets'}, live.presets.map(preset => h('option', {value: preset}, preset))));
-  boardFiles().then(files => files.length && boards.append(
-      h('optgroup', {label: 'board files'}, files.map(path => h('option', {value: `./${path}`}, path))))).catch(openError);
+  boardFiles()
+      .then(
+          files => files.length &&
+              boards.append(
+                  h('optgroup', {label: 'board files'},
+                    files.map(path => h('option', {value: `./${path}`}, path)))))
+      .catch(openError);
   addEventListener('keydown', event => {
     if (!(event.ctrlKey || event.metaKey) || /^(INPUT|TEXTAREA)$/.test(event.target.tagName)) return;
     const by = {z: event.shiftKey ? 1 : -1, y: 1}[event.key.toLowerCase()];
@@ -226,14 +276,17 @@ export function showLive(page, {live, database, version}) {
   }
   function failed(its, error) {
     if (!isOf({board: its}, shown)) return;
-    if (error instanceof Refused && isOf({board: its}, history.board))
-      keys.refuse(error.problems);
+    if (error instanceof Refused && isOf({board: its}, history.board)) keys.refuse(error.problems);
     message.textContent = `This board is refused: ${error.message}`;
     page.classList.add('refused');
   }
   const more = source => ({source, frames: frames[source]});
-  const askCore = inTurn((its, signal) => ask('run', its, {...more('preloaded'), record: false}, signal), answered('preloaded'), failed);
-  const askComputer = inTurn((its, signal) => ask('run', its, {...more('camera'), record: false}, signal), answered('camera'), failed);
+  const askCore = inTurn(
+      (its, signal) => ask('run', its, {...more('preloaded'), record: false}, signal), answered('preloaded'),
+      failed);
+  const askComputer = inTurn(
+      (its, signal) => ask('run', its, {...more('camera'), record: false}, signal), answered('camera'),
+      failed);
   let drawn = '';  // the board and the view of the cards
   const askCards = inTurn(
       ([its, source], signal) => ask('run', its, {...more(source), record: true}, signal),
@@ -278,14 +331,19 @@ export function showLive(page, {live, database, version}) {
   function draw() {
     const before = pinned?.runs ?? (shown === history.board ? previous : settled);
     figures.replaceChildren(...kFigures.map(([title, source, numberOf, textOf, noteOf]) => {
-      const [now, then] = [runs[source], pinned?.runs[source]].map(answer => answer && withFoldedLanes(answer.run));
+      const [now, then] =
+          [runs[source], pinned?.runs[source]].map(answer => answer && withFoldedLanes(answer.run));
       const number = now && numberOf(now);
       const difference = now && then && number - numberOf(then);
-      return h('div', {'data-source': source, 'data-figure': title}, h('dt', null, title, h('span', {class: 'state'})),
-               h('dd', {'data-value': number ?? ''}, now ? textOf(number, now) : '…'),
-               then && now && h('dd', {class: 'difference'}, `A: ${textOf(numberOf(then), then)}, ${
-                   Math.abs(difference) < 1e-9 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
-               h('dd', {class: 'note'}, now ? noteOf(now) : ''));
+      return h(
+          'div', {'data-source': source, 'data-figure': title},
+          h('dt', null, title, h('span', {class: 'state'})),
+          h('dd', {'data-value': number ?? ''}, now ? textOf(number, now) : '…'),
+          then && now &&
+              h('dd', {class: 'difference'},
+                `A: ${textOf(numberOf(then), then)}, ${
+                    Math.abs(difference) < 1e-9 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
+          h('dd', {class: 'note'}, now ? noteOf(now) : ''));
     }));
     const its = runs[view];
     if (its) {
@@ -314,13 +372,15 @@ export function showLive(page, {live, database, version}) {
     if (pinned?.runs[view]) {
       const table = differenceTable(pinned.runs[view].run, run);
       addChart(cards, {
-        id: 'differences', title: `${count(table[1].length, 'figure')} of stats.json differ from A`,
-        body: htmlTable(table[0], table[1].map(row => row.map(shortened))), numbers: () => table
+        id: 'differences',
+        title: `${count(table[1].length, 'figure')} of stats.json differ from A`,
+        body: htmlTable(table[0], table[1].map(row => row.map(shortened))),
+        numbers: () => table
       });
     }
     requestAnimationFrame(() => requestAnimationFrame(() => {
-      cards.style.minHeight = '';
-    }));
+                            cards.style.minHeight = '';
+                          }));
     drawGains(has ? gains.knobs : null);
     markWaiting();
   }
@@ -359,14 +419,17 @@ export function showLive(page, {live, database, version}) {
     if (!knobs) return;
     const kMost = 8;
     const best = knobs.changes.filter(({gained_percent: gained}) => gained > 0.05).slice(0, kMost);
-    const rows = best.map(step => [
-      button('Apply', () => set(step.sets.map(splitSet))), `${step.key}: ${step.from} → ${step.to}`,
-      rate(step.frames_per_second), gainText(step.gained_percent / 100), percent(step.area.slices_percent / 100),
-      [step.changes_disparities && 'changes the disparities', step.loses_pixels && 'loses pixels'].filter(Boolean).join(', ')
-    ]);
+    const rows = best.map(
+        step =>
+            [button('Apply', () => set(step.sets.map(splitSet))), `${step.key}: ${step.from} → ${step.to}`,
+             rate(step.frames_per_second), gainText(step.gained_percent / 100),
+             percent(step.area.slices_percent / 100), [
+               step.changes_disparities && 'changes the disparities', step.loses_pixels && 'loses pixels'
+             ].filter(Boolean).join(', ')]);
     const group = h('div', {class: 'cards'});
     addChart(group, {
-      id: 'best-changes', wide: true,
+      id: 'best-changes',
+      wide: true,
       title: best.length ? 'The single changes that gain most' : 'No single change gains frames',
       body: htmlTable(['', 'change', 'frames/s', 'gain', 'slices', ''], rows),
       note: `Of ${count(knobs.changes.length, 'change')}; all are below, under what to change.`
