@@ -9,6 +9,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import signal
 import socket
 import subprocess
@@ -375,6 +376,7 @@ class Lifetimes(ServeTest):
         server = self.serve()
         workers = self.workers(server)
         self.assertEqual(len(workers), serve.QUICK)
+        self.assertEqual(resource.prlimit(workers[0], resource.RLIMIT_AS), (serve.MEMORY, serve.MEMORY))
         for pid in workers:
             os.kill(pid, signal.SIGKILL)
         for _ in range(2 * serve.QUICK):
@@ -412,10 +414,13 @@ class Lifetimes(ServeTest):
             self.assertEqual((status, "been ended by signal 9" in text), (500, True), text)
 
     def test_limits_of_time_and_number(self):
-        server = self.serve(WORK=1, WAIT=1, REQUEST=1, IDLE=2, CONNECTIONS=8, QUICK=1)
+        server = self.serve(WORK=4, WAIT=1, REQUEST=1, IDLE=2, CONNECTIONS=8, QUICK=1)
         with server.begin("/run", LONG_RUN) as connection:
+            wait_until(lambda: self.working(server))
+            self.assertEqual(server.post("/check", {"board": "fpl2003"}),
+                             (503, {"error": "all workers are busy: try again"}))
             self.assertEqual(server.answer(connection)[::2],
-                             (500, '{"error": "it takes longer than 1 s"}'))
+                             (500, '{"error": "it takes longer than 4 s"}'))
         with server.connect() as slow_head, server.connect() as slow_body, server.connect() as idle:
             slow_body.sendall(server.head("POST", "/run", 1000))
             begin = time.monotonic()
