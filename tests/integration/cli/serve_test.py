@@ -177,7 +177,9 @@ class Routes(ServeTest):
         for origin in ("null", "http://evil.org", f"https://{server.host}", "", None):
             self.assertEqual(server.post("/check", check, Origin=origin)[0], 403, origin)
         for kind in ("text/plain", "multipart/form-data", None):
-            self.assertEqual(server.post("/check", check, Content_Type=kind)[0], 415, kind)
+            status, head, _ = server.ask("POST", "/check", check, Content_Type=kind)
+            self.assertEqual((status, head["Connection"]), (415, "close"), kind)  # the body is left
+        self.assertEqual(server.ask("POST", "/check", {"board": 1})[1]["Connection"], "keep-alive")
         for path in ("/check", "/run", "/explain", "/sweep", "/save"):
             self.assertEqual(server.post(path, check, Cookie=None)[0], 403, path)
         self.assertEqual(server.ask("PUT", "/picture", b"x", Cookie=None)[0], 403)
@@ -261,6 +263,9 @@ class Routes(ServeTest):
         self.assertEqual(document["problems"][0]["place"], "command line")
         with self.unchanged(self.folder / "secret.yaml"):
             self.assertEqual(server.post("/save", {"board": "fpl2003", "name": "out.yaml"})[0], 422)
+        (self.home / "made.yaml").symlink_to("../made.yaml")
+        self.assertEqual(server.post("/save", {"board": "fpl2003", "name": "made.yaml"})[0], 422)
+        self.assertFalse((self.folder / "made.yaml").exists())
 
 
 class Figures(ServeTest):
