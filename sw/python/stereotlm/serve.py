@@ -167,11 +167,8 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         self._received.allow(REQUEST)
         super().handle_one_request()
 
-    def version_string(self):
-        return "stereotlm"
-
-    def log_message(self, *_):
-        pass
+    version_string = lambda self: "stereotlm"
+    log_message = lambda *_: None
 
     def send_error(self, code, message=None, explain=None):  # about a head that cannot be read
         self._answer(code, message or self.responses[code][0], "text/plain")
@@ -185,10 +182,8 @@ class _Handler(http.server.BaseHTTPRequestHandler):
             raise
         except Exception as error:
             status, document = _said(error)
-            if self.path.partition("?")[0] == "/":
-                self._answer(status, document["error"], "text/plain")
-            else:
-                self._answer(status, json.dumps(document))
+            is_page = self.path.partition("?")[0] == "/"
+            self._answer(status, *([document["error"], "text/plain"] if is_page else [json.dumps(document)]))
 
     do_POST = do_PUT = do_GET
 
@@ -221,17 +216,19 @@ class _Handler(http.server.BaseHTTPRequestHandler):
             _require(self._header("Origin").lower() in server.origins, 403, "The Origin must be this page")
             _require(self._header("Content-Type").lower().partition(";")[0].strip() == kind, 415,
                      f"The header Content-Type must be {kind}")
-        route = getattr(self, f"_{path[1:] or 'page'}")
-        return route() if method == "GET" else route(int(length)) if method == "PUT" else route(
-            self._json(int(length)))
+        body = [] if method == "GET" else [self._json(int(length)) if method == "POST" else int(length)]
+        return getattr(self, f"_{path[1:] or 'page'}")(*body)
 
-    def _json(self, length):
+    def _data(self, length):
         data = self.rfile.read(length)
         if len(data) < length:
             raise _Gone
         self._is_read = True
+        return data
+
+    def _json(self, length):
         try:
-            return json.loads(data.decode(), parse_constant=int)  # NaN is no integer
+            return json.loads(self._data(length).decode(), parse_constant=int)  # NaN is no integer
         except (ValueError, RecursionError):
             raise _Error(400, "the body: must be JSON in UTF-8") from None
 
@@ -353,7 +350,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
     def _open(self, query):
         _require(secrets.compare_digest(query.encode(), f"token={self.server.token}".encode()), 403,
                  "Open the address that stereotlm serve has printed")
-        cookie = f"{self.server.cookie}; HttpOnly; SameSite=Lax; Path=/"
+        cookie = f"{self.server.cookie}; HttpOnly; SameSite=Lax"
         self._answer(303, "", "text/plain", Location="./", Set_Cookie=cookie)
 
     def _boards(self):
@@ -375,7 +372,9 @@ class _Handler(http.server.BaseHTTPRequestHandler):
             made, sent = ["synthetic"], ["truth", "truth_scale", "fit", "offset"]
             pictures = _checked(pictures, *([made] if "synthetic" in pictures else [["left", "right"], sent]))
             for name in {"left", "right", "truth"} & pictures.keys():
-                pictures[name] = self.server.path(name, pictures[name])
+                if pictures[name] not in self.server.pictures:
+                    _refuse(name, pictures[name], "no picture of this id is kept: send it again")
+                pictures[name] = os.path.join(self.server.scratch, pictures[name])
             options = {"truth_scale": "truth-scale", "offset": "disparity-offset"}
             words = [f"--{options.get(name, name)}={value}" for name, value in pictures.items()]
         if not body.get("record", True):
@@ -424,8 +423,16 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         self._stream(work)
 
     def _picture(self, length):
-        name = self.server.keep(self.rfile, length)
-        self._is_read = True
+        name, kept = secrets.token_hex(8), self.server.pictures
+        with self.server.upload:  # one at a time, because the server has it in memory meanwhile
+            data = self._data(length)
+            with open(os.path.join(self.server.scratch, name), "xb") as file:
+                file.write(data)
+            kept[name] = length
+            while len(kept) > PICTURES or sum(kept.values()) > PICTURE_BYTES:
+                oldest = next(iter(kept))
+                del kept[oldest]
+                os.unlink(os.path.join(self.server.scratch, oldest))
         self._answer(200, json.dumps({"id": name}))
 
 
@@ -448,8 +455,8 @@ class _Server(socketserver.ThreadingTCPServer):
         for number, worker in enumerate(self.workers):
             (self.quick if number < QUICK else self.long).put(worker)
         self._connections = threading.BoundedSemaphore(CONNECTIONS)
-        self._pictures = {}  # id -> bytes, the oldest first
-        self._lock, self._upload = threading.Lock(), threading.Lock()
+        self.pictures = {}  # id -> bytes, the oldest first
+        self.upload = threading.Lock()
         none = "'none'"
         scripts = [f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
                    for script in re.findall(r"<script\b[^>]*>(.*?)</script>", page, re.DOTALL)]
@@ -472,12 +479,6 @@ class _Server(socketserver.ThreadingTCPServer):
             request.recv(1 << 16)  # what is not read when the connection closes takes the answer away
         return self.close_request(request)
 
-    def process_request_thread(self, request, client_address):
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self._connections.release()
-
     def shutdown_request(self, request):
         end = time.monotonic() + 2
         with contextlib.suppress(OSError):
@@ -486,39 +487,9 @@ class _Server(socketserver.ThreadingTCPServer):
             while request.recv(1 << 16) and time.monotonic() < end:
                 pass  # as above
         self.close_request(request)
+        self._connections.release()
 
-    def handle_error(self, request, client_address):
-        pass  # the connection is closed
-
-    # Pictures.
-
-    def keep(self, source, length):
-        """Reads a picture of so many bytes. Returns its id. The oldest go when there are too many."""
-        name = secrets.token_hex(8)
-        path = os.path.join(self.scratch, name)
-        with self._upload, open(path, "xb") as file:  # one at a time: few are partly there
-            try:
-                while file.tell() < length:
-                    data = source.read(min(length - file.tell(), 1 << 20))
-                    if not data:
-                        raise _Gone
-                    file.write(data)
-            except BaseException:
-                os.unlink(path)
-                raise
-        with self._lock:
-            self._pictures[name] = length
-            while len(self._pictures) > PICTURES or sum(self._pictures.values()) > PICTURE_BYTES:
-                oldest = next(iter(self._pictures))
-                del self._pictures[oldest]
-                os.unlink(os.path.join(self.scratch, oldest))
-        return name
-
-    def path(self, key, name):
-        """The path of a picture."""
-        if name not in self._pictures:
-            _refuse(key, name, "no picture of this id is kept: send it again")
-        return os.path.join(self.scratch, name)
+    handle_error = lambda *_: None  # the connection is closed
 
 
 def main():

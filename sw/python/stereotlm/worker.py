@@ -155,8 +155,8 @@ class Worker:
         """Executes the command of these words, with arrays of 8 bits by their names. Returns an Answer.
 
         Raises Refused, Failed or WorkerDied. Warnings of the program become warnings of Python. If it is
-        interrupted (KeyboardInterrupt), the worker is ended. `progress`: whether a bar is shown, or a function
-        that is called with (done, of, text); what it raises ends the worker, too.
+        interrupted (KeyboardInterrupt), the worker is ended. `progress`: whether a bar is shown, or a
+        function that is called with (done, of, text); what it raises ends the worker, too.
         """
         pixels = {name: _pixels(name, array) for name, array in (arrays or {}).items()}
         words = [_word(argument) for argument in arguments]

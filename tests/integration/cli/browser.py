@@ -172,10 +172,12 @@ class Browser:
         chain.perform()
         self.drawn()
 
-    def screenshot(self, name):
-        """Saves the whole page, if STEREOTLM_SCREENSHOTS names a folder."""
+    def screenshot(self, name, whole=True):
+        """Saves the whole page, or its window, if STEREOTLM_SCREENSHOTS names a folder."""
         folder = os.environ.get("STEREOTLM_SCREENSHOTS")
-        if folder:
+        if folder and not whole:
+            self.driver.save_screenshot(f"{folder}/{name}.png")
+        elif folder:
             size = self.run("return [innerWidth, document.documentElement.scrollHeight]")
             metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": False}
             self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)

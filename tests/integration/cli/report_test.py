@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import sqlite3
+import struct
 
 import program
 from pictures import read_png
@@ -20,6 +21,11 @@ MOST_BYTES = 1_000_000
 def csv_rows(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def png_size(url):
+    head = base64.b64decode(url.partition(",")[2])
+    return struct.unpack(">II", head[16:24])
 
 
 class ReportTest(ProgramTest):
@@ -53,6 +59,30 @@ class Run(ReportTest):
         chart = self.folder / "chart.svg"
         self.succeeds(run("diagram", folder, "--out", chart))
         self.assertEqual(data["memory_chart"], chart.read_text())
+
+    def test_is_printed_without_a_page_too(self):
+        for number, mode in enumerate(([*PRELOADED, *SHARED], CAMERA_RATES)):
+            folder = self.run_of(f"a{number}", *mode, "--frames", "12")
+            page = self.data(folder)
+            self.assertEqual(json.loads(self.succeeds(run("report", folder, "--json"))), page)
+            printed = json.loads(self.succeeds(run("run", "fpl2003", *SMALL, "--synthetic", "1", *mode,
+                                                   "--frames", "12", "--page-data")))
+            self.assertEqual(png_size(printed["pictures"].pop("truth")), (program.WIDTH, program.HEIGHT))
+            of_page = page["run"]
+            more = {key: printed["stats"].pop(key) for key in [*printed["stats"]] if key not in of_page["stats"]}
+            self.assertEqual({"disparities_percent"} - more.keys(), set())
+            for key in ("folder", "command", "knobs"):
+                knobs = of_page.pop(key)
+            self.assertEqual(printed, of_page)
+            explained = run("explain", folder / "config.yaml", "--page-data",
+                            *(PRELOADED if number == 0 else []))
+            self.assertEqual(json.loads(self.succeeds(explained)), knobs)
+            bare = json.loads(self.succeeds(run("run", "fpl2003", *SMALL, *mode, "--timing-only", "--frames",
+                                                "12", "--no-record", "--page-data")))
+            self.assertEqual((bare["memory_chart"], "recording" in bare), (of_page["memory_chart"], False))
+        both = run("run", "fpl2003", "--timing-only", "--page-data", "--json")
+        self.refused(both, "--page-data: does not go with --json")
+        self.refused(run("report", folder), "--out: missing: the page to write")
 
     def test_a_change_takes_a_bank_that_holds_nothing_if_it_is_deep_enough(self):
         for more, idle, lacking in (((), ["bank6"], 0),

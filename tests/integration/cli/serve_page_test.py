@@ -148,6 +148,7 @@ class LiveTest(ProgramTest):
             ".map(each => each.dataset.key.slice('allocation.'.length))]))")
 
 
+@program.slow
 class Change(LiveTest):
     def test_two_banks_by_dragging_and_two_switches(self):
         self.opened()
@@ -209,8 +210,10 @@ class Change(LiveTest):
         self.assertEqual(sum(map(bool, self.holders().values())), 2)
 
     def test_a_drag_shows_what_it_would_give_and_keeps_nothing(self):
-        self.opened()
+        self.opened(width=1400, height=1300)  # as in sw/report/live_board.md
+        self.browser.screenshot("live", whole=False)
         before = self.address(), self.value("preloaded")
+        self.browser.run("document.querySelector('#bank-bank4').scrollIntoView({block: 'center'})")
         handle = self.browser.one('.buffer[data-key="allocation.left_lut"] .handle')
         chain = ActionChains(self.browser.driver, duration=20)
         chain.click_and_hold(handle).move_by_offset(6, 6)
@@ -221,6 +224,9 @@ class Change(LiveTest):
         ActionChains(self.browser.driver).release().perform()
         self.browser.settled()
         self.assertEqual((self.address(), self.value("preloaded")), before)
+        self.drag("left_lut", "bank0")
+        self.browser.run("document.querySelector('#bank-bank0').scrollIntoView({block: 'center'})")
+        self.browser.screenshot("live_drag", whole=False)
 
     def test_banks_are_added_removed_and_changed(self):
         self.opened()
@@ -265,6 +271,7 @@ class Change(LiveTest):
             "return document.querySelector('#edge-left_lut-bank6').getAttribute('aria-label')"))
 
 
+@program.slow
 class Ask(LiveTest):
     def test_gains_and_apply(self):
         self.opened()
@@ -340,6 +347,7 @@ class Ask(LiveTest):
         self.assertEqual(self.address(), "#board=two-banks")
 
 
+@program.slow
 class Look(LiveTest):
     def test_at_all_widths_light_and_dark(self):
         address = self.served()

@@ -9,6 +9,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import signal
 import socket
 import subprocess
@@ -149,7 +150,7 @@ class Routes(ServeTest):
         status, head, text = server.ask("GET", f"/?token={server.token}", Cookie=None)
         self.assertEqual((status, head["Location"], text), (303, "./", ""))
         self.assertRegex(head["Set-Cookie"],
-                         rf"^stereotlm_{server.port}=[\w-]{{43}}; HttpOnly; SameSite=Lax; ")
+                         rf"^stereotlm_{server.port}=[\w-]{{43}}; HttpOnly; SameSite=Lax$")
         self.assertNotIn(server.token, head["Set-Cookie"])
         status, head, text = server.ask("GET", "/", Cookie=f"a=b; {server.cookie}; {server.cookie}x")
         self.assertEqual((status, text), (200, PAGE))
@@ -176,7 +177,9 @@ class Routes(ServeTest):
         for origin in ("null", "http://evil.org", f"https://{server.host}", "", None):
             self.assertEqual(server.post("/check", check, Origin=origin)[0], 403, origin)
         for kind in ("text/plain", "multipart/form-data", None):
-            self.assertEqual(server.post("/check", check, Content_Type=kind)[0], 415, kind)
+            status, head, _ = server.ask("POST", "/check", check, Content_Type=kind)
+            self.assertEqual((status, head["Connection"]), (415, "close"), kind)  # the body is left
+        self.assertEqual(server.ask("POST", "/check", {"board": 1})[1]["Connection"], "keep-alive")
         for path in ("/check", "/run", "/explain", "/sweep", "/save"):
             self.assertEqual(server.post(path, check, Cookie=None)[0], 403, path)
         self.assertEqual(server.ask("PUT", "/picture", b"x", Cookie=None)[0], 403)
@@ -260,6 +263,9 @@ class Routes(ServeTest):
         self.assertEqual(document["problems"][0]["place"], "command line")
         with self.unchanged(self.folder / "secret.yaml"):
             self.assertIn("problems", server.post("/save", {"board": "fpl2003", "name": "out.yaml"})[1])
+        (self.home / "made.yaml").symlink_to("../made.yaml")
+        self.assertIn("problems", server.post("/save", {"board": "fpl2003", "name": "made.yaml"})[1])
+        self.assertFalse((self.folder / "made.yaml").exists())
 
 
 class Figures(ServeTest):
@@ -374,6 +380,7 @@ class Lifetimes(ServeTest):
         server = self.serve()
         workers = self.workers(server)
         self.assertEqual(len(workers), serve.QUICK)
+        self.assertEqual(resource.prlimit(workers[0], resource.RLIMIT_AS), (serve.MEMORY, serve.MEMORY))
         for pid in workers:
             os.kill(pid, signal.SIGKILL)
         for _ in range(2 * serve.QUICK):
@@ -411,10 +418,13 @@ class Lifetimes(ServeTest):
             self.assertEqual((status, "been ended by signal 9" in text), (500, True), text)
 
     def test_limits_of_time_and_number(self):
-        server = self.serve(WORK=1, WAIT=1, REQUEST=1, IDLE=2, CONNECTIONS=8, QUICK=1)
+        server = self.serve(WORK=8, WAIT=1, REQUEST=1, IDLE=2, CONNECTIONS=8, QUICK=1)
         with server.begin("/run", LONG_RUN) as connection:
+            wait_until(lambda: self.working(server))
+            self.assertEqual(server.post("/check", {"board": "fpl2003"}),
+                             (503, {"error": "all workers are busy: try again"}))
             self.assertEqual(server.answer(connection)[::2],
-                             (500, '{"error": "it takes longer than 1 s"}'))
+                             (500, '{"error": "it takes longer than 8 s"}'))
         with server.connect() as slow_head, server.connect() as slow_body, server.connect() as idle:
             slow_body.sendall(server.head("POST", "/run", 1000))
             begin = time.monotonic()
@@ -472,8 +482,8 @@ class Hostile(ServeTest):
     def request(self, server, chance):
         """The bytes of a request, and whether it is cut off."""
         texts = ["", "a", "\0", "é\ud800", "-x", "--write=/tmp/x", "../secret.yaml", "out.yaml",
-                 "/etc/passwd", "a/../../secret.yaml", "fpl2003", "own.yaml", "x" * 5000, BOMB, "[" * 3000, "1e999", "%s%n",
-                 "{a: &a [*a, *a]}", "5]\n- x", "<script>", "$(touch x)", "`touch x`"]
+                 "/etc/passwd", "a/../../secret.yaml", "fpl2003", "own.yaml", "x" * 5000, BOMB, "[" * 3000,
+                 "1e999", "%s%n", "{a: &a [*a, *a]}", "5]\n- x", "<script>", "$(touch x)", "`touch x`"]
         numbers = [0, -1, 1e308, 10**300, 2**63, 1.5, True, None]
         any_value = lambda: chance.choice([chance.choice(texts), chance.choice(numbers), [], {}, [[["x"]]],
                                            {"a": chance.choice(texts)}, [[chance.choice(texts)] * 2]])
