@@ -22,7 +22,7 @@ std::string picture_url(const kernels::GrayImage& picture);
 // A recorded run: what its folder holds, and what follows from its board without a simulation.
 nlohmann::ordered_json run_data(const runs::RecordedRun& run, const platform::Tables& tables);
 
-// A run that has just ended, without `folder` and `command`. `recording`: what it has recorded; null: nothing.
+// A run that has just ended, without `folder` and `command`. `recording`: what it has recorded, or null.
 nlohmann::ordered_json run_data(const runs::RunInput& input, const platform::Statistics& statistics,
                                 const stats::TableExtras& extras, const runs::Result& last,
                                 const RecordingData* recording);

@@ -97,7 +97,8 @@ class LiveTest(ProgramTest):
 
     def value(self, source):
         return float(self.browser.run(
-            "return document.querySelector(`#figures [data-source=${arguments[0]}] dd`).dataset.value", source))
+            "return document.querySelector(`#figures [data-source=${arguments[0]}] dd`).dataset.value",
+            source))
 
     def is_as_run(self, view="preloaded"):
         """The command of the page has its figures."""
@@ -219,7 +220,8 @@ class Change(LiveTest):
         chain.click_and_hold(handle).move_by_offset(6, 6)
         chain.move_to_element(self.browser.one("#bank-bank0")).perform()
         self.browser.until("return Number(document.querySelector('#figures dd').dataset.value) < 15")
-        self.assertIn("Links that change, MB/s: left_lut – bank6 159.0 → 0.0", self.browser.text("#chart-changes"))
+        self.assertIn("Links that change, MB/s: left_lut – bank6 159.0 → 0.0",
+                      self.browser.text("#chart-changes"))
         self.browser.keys(Keys.ESCAPE)
         ActionChains(self.browser.driver).release().perform()
         self.browser.settled()
@@ -303,12 +305,12 @@ class Ask(LiveTest):
         self.is_as_run()
 
     def test_a_scene_with_its_truth(self):
-        self.opened("fpl2003-qvga", "--set", "matcher.disparities=32")
+        board = ["fpl2003-qvga", "--set", "matcher.disparities=32"]
+        self.opened(*board)
         self.browser.click("#to-pictures")
         self.browser.click("#show-scene")
         self.browser.until("return document.querySelector('#truth')", 60)
-        found = json.loads(self.output("run", "fpl2003-qvga", "--set", "matcher.disparities=32", "--synthetic",
-                                         "1", "--source", "preloaded", "--json"))
+        found = json.loads(self.output("run", *board, "--synthetic", "1", "--source", "preloaded", "--json"))
         self.assertIn(f"{found['disparities_percent']:.2f} % of the pixels",
                       self.browser.text("#tab-pictures [role=status]"))
         self.assertIn(f"{found['accuracy']['bad_1_percent']:.2f} % are off by more than 1",
@@ -342,8 +344,9 @@ class Ask(LiveTest):
         self.browser.run("document.querySelector('#points button[data-row]').click()")
         self.browser.click("#open-point")
         self.becomes("#board=fpl2003&matcher.window=5")
-        self.output("run", "two-banks", "--timing-only", "--source", "preloaded", "--out", self.folder / "run")
-        self.opened(self.folder / "run")
+        out = self.folder / "run"
+        self.output("run", "two-banks", "--timing-only", "--source", "preloaded", "--out", out)
+        self.opened(out)
         self.assertEqual(self.address(), "#board=two-banks")
 
 
@@ -358,7 +361,8 @@ class Look(LiveTest):
                     self.browser.visit(address, width)
                     self.browser.choose("theme", theme)
                     self.browser.drawn()
-                    self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+                    wide = self.browser.run("return document.documentElement.scrollWidth")
+                    self.assertLessEqual(wide, width)
                     self.assertEqual(self.browser.run(FAINT), [])
                     self.browser.screenshot(f"live_{width}_{theme}")
 

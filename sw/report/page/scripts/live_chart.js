@@ -26,8 +26,8 @@ function changedLinks(before, now) {
       .filter(([, a, b]) => Math.abs(b - a) >= kLeastChange);
 }
 
-// place(buffer, bank): shows the board with the buffer in that bank, without keeping it; null: the board as it
-// is. drop(buffer, bank, isNew): keeps it. Returns {show, element}.
+// place(buffer, bank): shows the board with the buffer in that bank, without keeping it; null: the board as
+// it is. drop(buffer, bank, isNew): keeps it. Returns {show, element}.
 export function makeChart({place, drop}) {
   const status = h('p', {class: 'note', id: 'chart-status', 'aria-live': 'polite'});
   const target = h('div', {class: 'new-bank', id: 'new-bank'}, 'Drop a buffer here: into a new bank');

@@ -75,7 +75,7 @@ export function makePictures(boardNow, fail) {
           field('levels a disparity', scale), field('size', fit),
           button('Show the pair', showFiles, {id: 'show-pair'})),
       note(
-          'Pictures have the size of the board\'s images, or are cropped or padded to it. They stay on this machine.'),
+          'Pictures have the size of the board\'s images, or are cropped or padded to it.'),
       state, shown);
 }
 
@@ -136,6 +136,6 @@ export function makeSweep({keys}, now, open, fail) {
       controls(
           button('Sweep', start, {id: 'start-sweep'}), button('Stop', () => controller?.abort()), bar, state),
       note(
-          'Values with commas between them. The shown view says whether the core alone or the computer is swept.'),
+          'Values with commas between them. What is swept is what is shown: core or computer.'),
       shown);
 }

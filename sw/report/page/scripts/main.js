@@ -16,5 +16,6 @@ startTooltips();
 ({run: showRun, two_runs: showTwoRuns, database: showDatabase, live: showLive})[data.kind](page, data);
 page.append(h(
     'footer', {class: 'foot'},
-    data.kind === 'live' ? `stereotlm ${data.version}. Every figure is that of a run, which the command repeats.` :
-                           `Written by stereotlm ${data.version}. The page is one file and needs no network.`));
+    `Written by stereotlm ${data.version}. ${
+        data.kind === 'live' ? 'Each figure is that of a run.' :
+                               'The page is one file and needs no network.'}`));

@@ -52,8 +52,8 @@ function openAtHighest(body, svg) {
   body.scrollLeft += highest.left - body.getBoundingClientRect().left - kMargin;
 }
 
-// The chart of a run, or those of two at the same place, one shown at a time. `moreLines`: for the tooltips of
-// the links of one run.
+// The chart of a run, or those of two at the same place, one shown at a time. `moreLines`: for the tooltips
+// of the links of one run.
 export function addMemory(page, runs, moreLines = () => []) {
   const svgs = runs.map(run => parsedSvg(run.memory_chart));
   const links = svgs.map(linksOf);

@@ -2,7 +2,9 @@
 import {addChart, addHead, htmlTable} from './card.js';
 import {button, choice, commandLine, controls, download, fileName, folded, h, note} from './dom.js';
 import {againstBound, headlineOf, lostPixels, rateOf, waitsOf, waitText} from './findings.js';
-import {count, fixed, gainText, lossText, percent, rate, rateWith, shortened, signed, whole} from './format.js';
+import {
+    count, fixed, gainText, lossText, percent, rate, rateWith, shortened, signed, whole,
+} from './format.js';
 import {withFoldedLanes} from './lanes.js';
 import {makeChart} from './live_chart.js';
 import {makeKeys} from './live_keys.js';
@@ -72,7 +74,8 @@ async function reportOf(data) {
   const script = document.querySelector('script[type=module]').textContent;
   return `<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n` +
       `<meta name="generator" content="stereotlm report">\n` +
-      `<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>stereotlm report</title>\n` +
+      `<meta name="viewport" content="width=device-width, initial-scale=1">\n` +
+      `<title>stereotlm report</title>\n` +
       `<link rel="icon" href="data:,">\n<style>\n${
              style}</style>\n</head>\n<body>\n<main id="page"></main>\n` +
       `<script type="text/plain" id="data">${btoa(letters.join(''))}</script>\n` +

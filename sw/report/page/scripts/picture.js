@@ -17,7 +17,11 @@ async function pixelsOf({url, width, height, disparities}) {
     image.src = url;
     await image.decode();
   }
-  const canvas = h('canvas', {width: width ?? image.naturalWidth, height: height ?? image.naturalHeight, 'aria-hidden': 'true'});
+  const canvas = h('canvas', {
+    width: width ?? image.naturalWidth,
+    height: height ?? image.naturalHeight,
+    'aria-hidden': 'true'
+  });
   const context = canvas.getContext('2d', {willReadFrequently: true});
   context.fillStyle = '#808080';
   context.fillRect(0, 0, canvas.width, canvas.height);
