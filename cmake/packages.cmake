@@ -78,7 +78,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME stereotlm)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION electronics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS python3)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas, python3-stereotlm")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "the program
  Simulates pairs of pictures on the board of Miyajima and Maruyama (FPL 2003),
  accounts for each cycle of its memory banks, and searches for allocations of

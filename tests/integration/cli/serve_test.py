@@ -17,10 +17,12 @@ import sys
 import time
 import unittest
 import unittest.mock
+import urllib.request
 
 import program
 from pictures import PYTHON, pgm
 from program import HEIGHT, PROGRAM, WIDTH, ProgramTest, run, slow, wait_until
+from report_data import data_of
 
 MODULES = pathlib.Path(__file__).resolve().parents[3] / "sw" / "python"
 os.environ["STEREOTLM_PROGRAM"] = PROGRAM
@@ -457,23 +459,21 @@ class Lifetimes(ServeTest):
                 self.assertEqual(list(self.folder.glob("stereotlm_*")), [])
 
     def test_a_board_shows_it_in_a_notebook(self):
-        fake = self.file("fake", '#!/bin/sh\n[ "$1" != serve ] && exec "$REAL" "$@"\necho "$@" >&2\n'
-                                 '[ "$2" = fpl2003 ] || exit 2\n'
-                                 'echo "Open this: http://127.0.0.1:1234/?token=ab"\nexec sleep 1000\n')
-        fake.chmod(0o755)
-        with unittest.mock.patch.dict(os.environ, STEREOTLM_PROGRAM=str(fake), REAL=PROGRAM):
-            live = stereotlm.Board("fpl2003", sets={"matcher.window": 5}).live(height=300)
-            self.assertEqual(live.url, "http://127.0.0.1:1234/?token=ab")
-            self.assertIn('height="300"', live._repr_html_())
-            left = descendants(live._process.pid)
-            self.assertEqual(len(left), 1)
-            live.close()
-            live.close()
-            self.assertFalse(any(map(stat, left)))
-            with self.assertRaises(stereotlm.Failed) as failed:
-                stereotlm.Board(str(self.home / "own.yaml")).live()
-            self.assertIn(f"serve {self.home}/own.yaml --folder={os.getcwd()} --port=0",
-                          str(failed.exception))
+        live = stereotlm.Board("fpl2003", sets={"matcher.window": 5}).live(height=300)
+        self.assertIn('height="300"', live._repr_html_())
+        opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
+        with opener.open(live.url) as page:
+            path = self.file("page.html", page.read().decode())
+        data = data_of(path)["live"]
+        self.assertEqual((data["preset"], data["sets"]), ("fpl2003", ["matcher.window=5"]))
+        left = descendants(live._process.pid)
+        self.assertGreater(len(left), 1)
+        live.close()
+        live.close()
+        wait_until(lambda: not any(map(stat, left)), 2)
+        with unittest.mock.patch.dict(os.environ, STEREOTLM_PROGRAM="/bin/false"):
+            with self.assertRaises(FileNotFoundError):
+                stereotlm.Board("fpl2003").live()
 
 
 class Hostile(ServeTest):
