@@ -4,9 +4,11 @@ export const kPsOfMs = 1e9;
 
 // Digits are grouped from 10,000 on.
 // What is shown as zero has no sign.
-export const fixed = (number, digits) => number.toLocaleString(
+// A format is kept: to make one takes longer than to use it.
+const formats = [];
+export const fixed = (number, digits) => (formats[digits] ??= new Intl.NumberFormat(
     'en-US', {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: 'min2',
-              signDisplay: 'negative'});
+              signDisplay: 'negative'})).format(number);
 export const whole = number => fixed(Math.round(number), 0);
 // A text with its counts as numbers of the page.
 export const grouped = text => text.replace(/(?<![\w.])\d{5,}(?![\w.])/g, digits => whole(Number(digits)));

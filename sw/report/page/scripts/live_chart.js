@@ -13,9 +13,12 @@ const kNewBank = '#new';
 const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
 const bankOf = element => element?.closest?.('.block[id^="bank-"]')?.id.slice('bank-'.length);
 
-// name -> MB/s of the links of a drawing; null: of none.
-const ratesOf = svg => new Map(
-    svg ? linksOf(svg).filter(({element}) => element.dataset.mbps).map(({name, rate}) => [name, rate]) : []);
+// name -> MB/s of the links of a run; null: of none. Taken from the text of its drawing: to make elements of it
+// takes too long.
+const ratesOf = run => new Map(
+    [...(run?.memory_chart ?? '')
+         .matchAll(/ data-from="\w+-([^"]*)" data-to="\w+-([^"]*)" data-peak="[^"]*" data-mbps="([^"]*)"/g)]
+        .map(([, from, to, rate]) => [`${from} – ${to}`, Number(rate)]));
 
 // The links whose rates differ: [[name, before, now], ..].
 function changedLinks(before, now) {
@@ -39,7 +42,6 @@ export function makeChart({place, drop}) {
   const kIdle =
       'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
   let run = null;
-  let baseline = null;  // the drawing with which links are compared
   let held = null;      // {key, label, from, bank, x, y, isDragged, byKeys}
   let kept = null;      // the key of the buffer that had the focus
   let waiting = null;   // what show() was given meanwhile
@@ -146,22 +148,19 @@ export function makeChart({place, drop}) {
   // Draws the run. While a buffer is held the drawing stays as it is, and only the changed links are named.
   // `with_`: the run with which links are compared; null: none. `name`: of that.
   function show(its, with_, name) {
-    const parse = any =>
-        any && new DOMParser().parseFromString(any.memory_chart, 'image/svg+xml').documentElement;
     if (held) {
       waiting = [its, with_, name];
-      return listChanges(changedLinks(parse(run), parse(its)));
+      return listChanges(changedLinks(run, its));
     }
     waiting = null;
     run = its;
-    baseline = parse(with_);
     const focused = document.activeElement?.closest?.('.buffer')?.dataset.key ?? kept;
     const hadFocus = group.contains(document.activeElement) || kept !== null;
     const left = group.querySelector('.memory')?.scrollLeft;
     group.style.minHeight = `${group.offsetHeight}px`;
     group.replaceChildren();
-    const links = changedLinks(baseline, parse(run));
-    const before = ratesOf(baseline);
+    const links = changedLinks(with_, run);
+    const before = ratesOf(with_);
     addMemory(
         group, [run],
         link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);

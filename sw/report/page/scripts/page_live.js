@@ -89,6 +89,8 @@ export function showLive(page, {live, database, version}) {
       new History({preset: first.preset, sets: first.sets, calibration: first.calibration}, () => changed());
   const runs = {preloaded: null, camera: null};  // the newest answers: {board, run}
   let view = 'preloaded';
+  let chartOf = null;     // the answer that the chart shows
+  let isChartDue = false;
   let shown = null;  // the board that is asked for: that of the history, or while a buffer is dragged another
   let settled = {};  // of `runs` those of boards of the history
   let previous = {};    // the same before the last change
@@ -274,7 +276,10 @@ export function showLive(page, {live, database, version}) {
       runs[source] = {board: its, run};
       if (isOf(runs[source], history.board)) settled = {...settled, [source]: runs[source]};
       message.textContent = '';
-      draw();
+      // The computer is asked behind the core, so that the core's answer is not kept waiting.
+      if (source === 'preloaded' && isOf(runs.preloaded, history.board)) askComputer(history.board);
+      drawFigures();
+      if (source === view) drawChartSoon();
     };
   }
   function failed(its, error) {
@@ -299,13 +304,15 @@ export function showLive(page, {live, database, version}) {
   function askWhenQuiet() {
     clearTimeout(quiet);
     const wanted = `${view} ${addressOf(history.board)}`;
-    if (wanted !== drawn) quiet = setTimeout(() => askCards([history.board, view]), kQuiet);
+    quiet = setTimeout(() => {
+      window.history.replaceState(null, '', addressOf(history.board));
+      if (wanted !== drawn) askCards([history.board, view]);
+    }, kQuiet);
   }
 
   function showBoard(its) {
     shown = its;
     askCore(its);
-    if (its === history.board) askComputer(its);
     markWaiting();
   }
   function changed() {
@@ -317,7 +324,7 @@ export function showLive(page, {live, database, version}) {
     showBoard(history.board);
     undo.disabled = !history.canUndo;
     redo.disabled = !history.canRedo;
-    window.history.replaceState(null, '', addressOf(history.board));
+    if (isOf(runs.preloaded, history.board)) draw();
     askWhenQuiet();
   }
 
@@ -328,11 +335,19 @@ export function showLive(page, {live, database, version}) {
       cell.classList.toggle('stale', !isOf(answer, shown));
       cell.querySelector('.state').textContent = isOf(answer, shown) ? '' : ' …';
     }
-    chart.element.classList.toggle('stale', !isOf(runs[view], shown));
+    chart.element.classList.toggle('stale', isChartDue || chartOf !== runs[view] || !isOf(chartOf, shown));
     cards.classList.toggle('stale', drawn !== `${view} ${addressOf(history.board)}`);
   }
   function draw() {
-    const before = pinned?.runs ?? (shown === history.board ? previous : settled);
+    drawFigures();
+    drawChartSoon();
+  }
+  // The figures are on the screen before the chart is drawn, which takes longer.
+  function drawChartSoon() {
+    if (!isChartDue) requestAnimationFrame(() => setTimeout(drawChart));
+    isChartDue = true;
+  }
+  function drawFigures() {
     figures.replaceChildren(...kFigures.map(([title, source, numberOf, textOf, noteOf]) => {
       const [now, then] =
           [runs[source], pinned?.runs[source]].map(answer => answer && withFoldedLanes(answer.run));
@@ -348,17 +363,22 @@ export function showLive(page, {live, database, version}) {
                     Math.abs(difference) < 1e-9 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
           h('dd', {class: 'note'}, now ? noteOf(now) : ''));
     }));
+    markWaiting();
+  }
+  function drawChart() {
+    isChartDue = false;
+    const before = pinned?.runs ?? (shown === history.board ? previous : settled);
     const its = runs[view];
-    if (its) {
-      const run = withFoldedLanes(its.run);
-      chart.show(run, before[view]?.run && withFoldedLanes(before[view].run), pinned ? 'A' : 'before');
-      if (isOf(its, history.board)) {
-        name.textContent = run.stats.board;
-        headline.textContent = headlineOf(run);
-        document.title = `${run.stats.board}: ${headlineOf(run)}`;
-        keys.show(its.run.settings);
-        command.replaceChildren(commandLine(commandOf(history.board, view, frames[view])));
-      }
+    if (!its) return;
+    const run = withFoldedLanes(its.run);
+    chart.show(run, before[view]?.run && withFoldedLanes(before[view].run), pinned ? 'A' : 'before');
+    chartOf = its;
+    if (isOf(its, history.board)) {
+      name.textContent = run.stats.board;
+      headline.textContent = headlineOf(run);
+      document.title = `${run.stats.board}: ${headlineOf(run)}`;
+      keys.show(its.run.settings);
+      command.replaceChildren(commandLine(commandOf(history.board, view, frames[view])));
     }
     markWaiting();
     askWhenQuiet();
@@ -368,7 +388,7 @@ export function showLive(page, {live, database, version}) {
     Object.assign(run, {isLive: true, command: commandOf(its, view, frames[view])});
     const has = gains && gains.address === addressOf(its) && gains.source === view;
     if (has) run.knobs = gains.knobs;
-    runs[view] = {board: its, run};
+    runs[view].run = run;
     cards.style.minHeight = `${cards.offsetHeight}px`;
     cards.replaceChildren();
     addCards(cards, run);
