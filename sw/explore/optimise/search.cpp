@@ -38,6 +38,7 @@ constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
 constexpr std::size_t kPieces = 32;               // for each process, of a round
 constexpr std::size_t kRunsOfComputers = 2;       // the same, of a round with whole computers
 constexpr std::size_t kMostLooked = 4096;         // nodes that a round looks at
+constexpr std::uint64_t kShortWindow = 30;        // frames of the steady rate of a short run, or a turn more
 
 using Values = std::array<double, kMostGoals>;  // normalised: larger is better
 
@@ -175,28 +176,33 @@ class Search::Space {
   void add_board(std::uint64_t number, std::map<std::string, BoardConfig>& by_accuracy_key);
   std::vector<double> accuracy(const BoardConfig& board) const;
 
+  // Whether placements of one group can have other estimates.
+  bool is_alone(const Combination& of) const { return of.is_full || (needs_energy_ && !of.takes_alike); }
   // The best of all placements of a combination.
   Estimate estimate(Combination& of);
   Estimate estimate(Combination& of, const Placements::Group& group, std::uint64_t placement);
   std::uint64_t least_cycles(Combination& of, const Placements::Group& group);
 
-  // The keys of the results that a group, or one of its placements, needs.
+  // The frames of a run of a whole computer that may rule it out before its own run, which has at least
+  // twice as many; 0: there is none.
+  std::uint64_t short_frames(const Combination& of) const;
+  // The keys of the results that a group, or one of its placements, needs. `is_short`: of the short run.
   std::vector<std::string> result_keys(Combination& of, const Placements::Group& group,
-                                       std::uint64_t placement);
+                                       std::uint64_t placement, bool is_short = false);
   std::vector<double> simulate(Combination& of, const Placements::Group& group, std::uint64_t placement,
-                               std::size_t which);
-  // nullopt if the board does not meet the requirements. `results`: of each of the keys.
+                               std::size_t which, bool is_short = false);
+  // nullopt if the board does not meet the requirements, or, `is_short`, cannot. `results`: of each of the
+  // keys.
   std::optional<std::vector<Range>> values(Combination& of, const Placements::Group& group,
                                            std::uint64_t placement,
-                                           const std::vector<std::vector<double>>& results);
+                                           const std::vector<std::vector<double>>& results,
+                                           bool is_short = false);
   std::vector<double> totals(const Combination& of, const std::vector<std::vector<double>>& results) const;
   // Of BoardModel::figures_of_cycles, or of result_names().
   std::map<std::string, double> named(const Combination& of, const std::vector<std::vector<double>>& results,
                                       const BoardConfig& board) const;
 
  private:
-  // Whether placements of one use of banks can differ in figures that follow from the cycles.
-  bool is_alone(const Combination& of) const { return of.is_full || (needs_energy_ && !of.takes_alike); }
   const Combination::OfUse& of_use(Combination& of, std::uint32_t use);
   Combination::OfUse facts_of(const Combination& of, const BoardConfig& board);
   // `most_steady`: of a whole computer, an upper bound of its rate.
@@ -218,6 +224,7 @@ class Search::Space {
   std::vector<std::string> accuracy_;  // its figures that are needed
   bool is_judged_ = true;              // whether the last combination has them
   bool needs_all_ = false;             // a figure beyond those of the core
+  bool needs_steady_alone_ = false;    // the only one of a run is the steady rate
   bool needs_energy_ = false;          // that of sdram does not follow from the cycles alone
   std::unique_ptr<Conditions> conditions_;
   std::map<std::string, std::shared_ptr<const Placements>> placements_;
@@ -279,6 +286,7 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   for (const std::string& name : without) needed.erase(name);
   for (const std::string& name : needed)
     needs_all_ = needs_all_ || std::count(core_figures().begin(), core_figures().end(), name) == 0;
+  needs_steady_alone_ = needed == std::set<std::string>{kSteady};
   if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kExact, kExactLeast, kExactMost, kLostPixels});
   needed_ = {needed.begin(), needed.end()};
   needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
@@ -517,9 +525,17 @@ Range Search::Space::long_run_rate(Combination& of, std::uint64_t placement, con
   return model_.long_run_rate(placed, frame_cycles);
 }
 
+std::uint64_t Search::Space::short_frames(const Combination& of) const {
+  const std::uint64_t turn = of.placements->turn();
+  const std::uint64_t frames = turn + (kShortWindow + turn - 1) / turn * turn;
+  return of.run.camera && needs_steady_alone_ && 2 * frames <= of.run.frames ? frames : 0;
+}
+
 std::vector<std::string> Search::Space::result_keys(Combination& of, const Placements::Group& group,
-                                                    std::uint64_t placement) {
-  if (of.is_full) return {result_key(make_point(0, of.placements->placed(of.board, placement), of.run).hash)};
+                                                    std::uint64_t placement, bool is_short) {
+  PointRun run = of.run;
+  if (is_short) run.frames = short_frames(of);
+  if (of.is_full) return {result_key(make_point(0, of.placements->placed(of.board, placement), run).hash)};
   std::vector<std::string> keys;
   if (of.is_by_ways) {
     of.key_of_way.resize(of.placements->ways());
@@ -535,7 +551,7 @@ std::vector<std::string> Search::Space::result_keys(Combination& of, const Place
 }
 
 std::vector<double> Search::Space::simulate(Combination& of, const Placements::Group& group,
-                                            std::uint64_t placement, std::size_t which) {
+                                            std::uint64_t placement, std::size_t which, bool is_short) {
   if (of.is_by_ways)
     return {static_cast<double>(
         model_.frame_cycles(of.placements->board_of_way(of.board, group.ways[which]), 1).front())};
@@ -544,7 +560,9 @@ std::vector<double> Search::Space::simulate(Combination& of, const Placements::G
     const std::vector<std::uint64_t> cycles = model_.frame_cycles(placed, of.run.frames);
     return {static_cast<double>(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0}))};
   }
-  const Figures figures = model_.simulate(make_point(0, placed, of.run));
+  PointRun run = of.run;
+  if (is_short) run.frames = short_frames(of);
+  const Figures figures = model_.simulate(make_point(0, placed, run));
   std::vector<double> values;
   for (const std::string& name : needed_) {
     const auto found = std::find_if(figures.values.begin(), figures.values.end(),
@@ -586,7 +604,8 @@ std::map<std::string, double> Search::Space::named(const Combination& of,
 
 std::optional<std::vector<Range>> Search::Space::values(Combination& of, const Placements::Group& group,
                                                         std::uint64_t placement,
-                                                        const std::vector<std::vector<double>>& results) {
+                                                        const std::vector<std::vector<double>>& results,
+                                                        bool is_short) {
   std::optional<Combination::OfUse> own;
   if (is_alone(of)) own = facts_of(of, of.placements->placed(of.board, placement));
   const Combination::OfUse& facts = own ? *own : of_use(of, group.use);
@@ -605,7 +624,7 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
   }
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];
-    if (!(fixed ? fixed : requirements_[i].holds(now)).value_or(false)) return std::nullopt;
+    if (!(fixed ? fixed : requirements_[i].holds(now)).value_or(is_short)) return std::nullopt;
   }
   std::vector<Range> values;
   for (std::size_t goal = 0; goal < goals(); ++goal)
@@ -677,12 +696,47 @@ bool Search::is_dominated(const double* best) const {
   return std::any_of(front_.begin(), front_.end(), [&](const FrontPoint& one) { return beats(one, best); });
 }
 
+std::vector<double> Search::bests_of(const std::vector<Range>& values) const {
+  std::vector<double> bests;
+  for (std::size_t goal = 0; goal < values.size(); ++goal)
+    bests.push_back(best_of(values[goal], space_->is_maximum(goal)));
+  return bests;
+}
+
+// Each value is what both runs leave open. So a board that its short run rules out is ruled out by its own
+// run too, and the front does not depend on which boards had a run of their own.
+Search::Found Search::find(Combination& its, const Placements::Group& group, std::uint64_t placement,
+                           const GetResult& get) {
+  std::optional<std::vector<Range>> of_short;
+  if (space_->short_frames(its) > 0) {
+    const std::string key = space_->result_keys(its, group, placement, true).front();
+    const auto result = get(key, 0, true);
+    of_short = space_->values(its, group, placement, {result}, true);
+    if (!of_short) return {"unmet", {}, {}};
+    if (is_dominated(bests_of(*of_short).data())) return {"bound", *of_short, {}};
+  }
+  Found found;
+  for (const std::string& key : space_->result_keys(its, group, placement)) {
+    const auto result = get(key, found.results.size(), false);
+    if (result.empty()) return {"", *of_short, {}};
+    found.results.push_back(result);
+  }
+  const auto values = space_->values(its, group, placement, found.results);
+  found.fate = "unmet";
+  if (!values) return found;
+  found.values = *values;
+  for (std::size_t goal = 0; of_short && goal < values->size(); ++goal) {
+    const Range& other = (*of_short)[goal];
+    const double most = std::min(found.values[goal].most, other.most);
+    found.values[goal] = {std::min(std::max(found.values[goal].least, other.least), most), most};
+  }
+  found.fate = is_dominated(bests_of(found.values).data()) ? "dominated" : "front";
+  return found;
+}
+
 void Search::add_to_front(const std::vector<Range>& values, std::uint64_t combination,
                           const std::vector<std::uint32_t>& placements) {
-  std::vector<double> best;
-  for (std::size_t goal = 0; goal < values.size(); ++goal)
-    best.push_back(best_of(values[goal], space_->is_maximum(goal)));
-  if (is_dominated(best.data())) return;
+  if (is_dominated(bests_of(values).data())) return;
   const auto is_same = [&values](const FrontPoint& point) {
     return std::equal(values.begin(), values.end(), point.values.begin(),
                       [](const Range& a, const Range& b) { return a.least == b.least && a.most == b.most; });
@@ -692,10 +746,7 @@ void Search::add_to_front(const std::vector<Range>& values, std::uint64_t combin
     front_.push_back({values, 0, {}});
     const std::vector<FrontPoint> before = front_;
     const auto is_beaten = [&](const FrontPoint& other) {
-      std::vector<double> its;
-      for (std::size_t goal = 0; goal < values.size(); ++goal)
-        its.push_back(best_of(other.values[goal], space_->is_maximum(goal)));
-      return is_dominated(its.data());
+      return is_dominated(bests_of(other.values).data());
     };
     std::vector<FrontPoint> kept;
     for (const FrontPoint& other : before) {
@@ -825,41 +876,61 @@ bool Search::step(const std::function<bool()>& keep_going) {
   };
   // In another process: finds the values of placements, and says the results of simulations.
   const auto examine = [&](Combination& its, const Placements::Group& group, std::uint32_t placement,
-                           const std::vector<std::uint32_t>& placements, Bytes& bytes) {
-    const std::vector<std::string> keys = space_->result_keys(its, group, placement);
-    std::vector<std::vector<double>> results;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      auto known = results_.find(keys[i]);
-      if (known == results_.end()) {
-        known = results_.emplace(keys[i], space_->simulate(its, group, placement, i)).first;
-        bytes.put('r');
-        bytes.put_text(keys[i]);
-        bytes.put_numbers(known->second);
-      }
-      results.push_back(known->second);
+                           const std::vector<std::uint32_t>& placements, Bytes& bytes) -> Found {
+    bool had_short_run = false;
+    const auto get = [&](const std::string& key, std::size_t which, bool is_short) -> std::vector<double> {
+      const auto known = results_.find(key);
+      if (known != results_.end()) return known->second;
+      if (had_short_run && !front_.empty()) return {};  // else there would be no best so far for long
+      had_short_run = is_short;
+      const auto result = space_->simulate(its, group, placement, which, is_short);
+      results_.emplace(key, result);
+      const bool is_second = !is_short && space_->short_frames(its) > 0;
+      bytes.put(is_second ? 's' : 'r');
+      bytes.put_text(key);
+      bytes.put_numbers(result);
+      return result;
+    };
+    Found found = find(its, group, placement, get);
+    if (found.fate == "front") {
+      add_to_front(found.values, its.number, placements);
+      put_values(bytes, found.values, placements);
     }
-    const auto values = space_->values(its, group, placement, results);
-    if (!values) return;
-    add_to_front(*values, its.number, placements);
-    put_values(bytes, *values, placements);
+    return found;
   };
   const auto work = [&](std::size_t piece) {
     const Node& node = chosen[piece];
     Bytes bytes;
     Combination& its = space_->combination(node.combination);
     const std::vector<Placements::Group>& groups = its.placements->groups();
+    const auto put_group = [&bytes](const Node& one, const std::vector<std::uint32_t>& placements) {
+      bytes.put('g');
+      bytes.put(one.group);
+      bytes.put(one.best);
+      bytes.put_numbers(placements);
+    };
     if (node.placement != Node::kAll) {
-      examine(its, groups[node.group], node.placement, {node.placement}, bytes);
+      const Found found = examine(its, groups[node.group], node.placement, {node.placement}, bytes);
+      if (!found.fate.empty()) return bytes.text();
+      Node again = node;  // its own run comes after those of boards that can be better
+      const std::vector<double> bests = bests_of(found.values);
+      for (std::size_t goal = 0; goal < bests.size(); ++goal)
+        again.best[goal] = std::min(node.best[goal], bests[goal]);
+      put_group(again, {node.placement});
       return bytes.text();
     }
     std::vector<Node> nodes;
+    const bool is_alone = space_->is_alone(its) && !its.is_by_ways;
     for (std::uint32_t i = 0; i < groups.size(); ++i) {
-      Node one = node;
-      one.group = i;
-      one.boards = static_cast<std::uint32_t>(groups[i].placements.size());
-      const Space::Estimate estimate = space_->estimate(its, groups[i], groups[i].placements.front());
-      one.best = estimate.best;
-      if (estimate.may_meet && !is_dominated(one.best.data())) nodes.push_back(one);
+      const std::vector<std::uint32_t>& all = groups[i].placements;
+      for (std::size_t first = 0; first < (is_alone ? all.size() : 1); ++first) {
+        Node one = node;
+        one.group = i;
+        if (is_alone) one.placement = all[first];
+        const Space::Estimate estimate = space_->estimate(its, groups[i], all[first]);
+        one.best = estimate.best;
+        if (estimate.may_meet && !is_dominated(one.best.data())) nodes.push_back(one);
+      }
     }
     std::sort(nodes.rbegin(), nodes.rend());
     for (const Node& one : nodes) {
@@ -869,10 +940,7 @@ bool Search::step(const std::function<bool()>& keep_going) {
         examine(its, group, group.placements.front(), group.placements, bytes);
         continue;
       }
-      bytes.put('g');
-      bytes.put(one.group);
-      bytes.put(one.best);
-      bytes.put_numbers(group.placements);
+      put_group(one, is_alone ? std::vector{one.placement} : group.placements);
     }
     return bytes.text();
   };
@@ -882,10 +950,10 @@ bool Search::step(const std::function<bool()>& keep_going) {
     state_.open -= node.boards;
     for (Bytes bytes(message); !bytes.at_end();) {
       const char kind = bytes.get<char>();
-      if (kind == 'r') {
+      if (kind == 'r' || kind == 's') {
         const std::string key = bytes.get_text();
         const auto result = bytes.get_numbers<double>();
-        if (results_.emplace(key, result).second) ++state_.simulated;
+        if (results_.emplace(key, result).second && kind == 'r') ++state_.simulated;
         new_results_.emplace(key, result);
       } else if (kind == 'v') {
         std::vector<Range> values(space_->goals());
@@ -995,19 +1063,19 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
           bounds.push_back(Range::of(space_->is_maximum(goal) ? estimate.best[goal] : -estimate.best[goal]));
         take(estimate.best, bounds, true);
       } else {
-        std::vector<std::vector<double>> results;
-        for (std::size_t i = 0; i < space_->result_keys(its, group, placement).size(); ++i)
-          results.push_back(space_->simulate(its, group, placement, i));
-        const auto values = space_->values(its, group, placement, results);
-        if (!values) {
+        const Found its_own =
+            find(its, group, placement, [&](const std::string& /*key*/, std::size_t which, bool is_short) {
+              return space_->simulate(its, group, placement, which, is_short);
+            });
+        if (its_own.fate == "unmet") {
           found.unmet = "all requirements, or loses pixels, as its simulation shows";
           continue;
         }
         Values best{};
-        for (std::size_t goal = 0; goal < values->size(); ++goal)
-          best[goal] = best_of((*values)[goal], space_->is_maximum(goal));
-        take(best, *values, false);
-        if (!is_dominated(best.data())) return found;
+        const std::vector<double> bests = bests_of(its_own.values);
+        std::copy(bests.begin(), bests.end(), best.begin());
+        take(best, its_own.values, false);
+        if (its_own.fate == "front") return found;
       }
       if (its.is_by_ways) break;
     }
@@ -1028,15 +1096,10 @@ std::vector<Search::Examined> Search::examined(Combination& its) {
     if (!estimate.may_meet) {
       one.fate = "unmet";
     } else if (!is_dominated(estimate.best.data())) {
-      std::vector<std::vector<double>> results;
-      for (const std::string& key : space_->result_keys(its, group, placement))
-        results.push_back(results_.at(key));
-      one.results = space_->totals(its, results);
-      const auto values = space_->values(its, group, placement, results);
-      std::vector<double> best;
-      for (std::size_t goal = 0; values && goal < values->size(); ++goal)
-        best.push_back(best_of((*values)[goal], space_->is_maximum(goal)));
-      one.fate = !values ? "unmet" : is_dominated(best.data()) ? "dominated" : "front";
+      const Found its_own = find(its, group, placement,
+                                 [&](const std::string& key, std::size_t, bool) { return results_.at(key); });
+      one.fate = its_own.fate;
+      if (!its_own.results.empty()) one.results = space_->totals(its, its_own.results);
     }
     const auto [at, is_new] = known.emplace(std::tuple(one.fate, group.use, one.results), found.size());
     if (is_new) return found.push_back(std::move(one));

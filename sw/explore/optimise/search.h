@@ -174,12 +174,23 @@ class Search {
   struct Node;
   struct Heap;
 
+  // What is found of a placement that its bounds do not rule out.
+  struct Found {
+    std::string fate;                          // unmet, bound, dominated, front; empty: a result is missing
+    std::vector<Range> values;                 // [goal]; without meaning if unmet
+    std::vector<std::vector<double>> results;  // of its own run; empty if its short run rules it out
+  };
+  // Gives the result of a key, the one with number `which` of the placement; empty if it is not known yet.
+  using GetResult =
+      std::function<std::vector<double>(const std::string& key, std::size_t which, bool is_short)>;
+  Found find(Combination& its, const Placements::Group& group, std::uint64_t placement, const GetResult& get);
   bool compute_accuracy(const std::function<bool()>& keep_going);
   bool assess(const std::function<bool()>& keep_going);
   bool step(const std::function<bool()>& keep_going);
   void add_to_front(const std::vector<Range>& values, std::uint64_t combination,
                     const std::vector<std::uint32_t>& placements);
   std::vector<Examined> examined(Combination& its);
+  std::vector<double> bests_of(const std::vector<Range>& values) const;
   bool beats(const FrontPoint& point, const double* best) const;
   bool is_dominated(const double* best) const;
 
