@@ -14,7 +14,9 @@ import {makePictures, makeSweep} from './live_tabs.js';
 import {showDatabase} from './page_database.js';
 import {addCards} from './page_run.js';
 
-const kQuiet = 150;  // ms without a change, after which the charts below follow
+// ms without a change, after which the charts below follow: once both rates are known, and while one is not.
+const kQuiet = 150;
+const kLate = 1500;
 const kViews = [['preloaded', 'the core alone'], ['camera', 'the whole computer']];
 
 // [name, source of the run, number of a run, text of a number, what to say beside it]
@@ -280,6 +282,7 @@ export function showLive(page, {live, database, version}) {
       if (source === 'preloaded' && isOf(runs.preloaded, history.board)) askComputer(history.board);
       drawFigures();
       if (source === view) drawChartSoon();
+      askWhenQuiet();
     };
   }
   function failed(its, error) {
@@ -307,7 +310,7 @@ export function showLive(page, {live, database, version}) {
     quiet = setTimeout(() => {
       window.history.replaceState(null, '', addressOf(history.board));
       if (wanted !== drawn) askCards([history.board, view]);
-    }, kQuiet);
+    }, isOf(runs.preloaded, history.board) && isOf(runs.camera, history.board) ? kQuiet : kLate);
   }
 
   function showBoard(its) {
