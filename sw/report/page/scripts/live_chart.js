@@ -13,8 +13,8 @@ const kNewBank = '#new';
 const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
 const bankOf = element => element?.closest?.('.block[id^="bank-"]')?.id.slice('bank-'.length);
 
-// name -> MB/s of the links of a run; null: of none. Taken from the text of its drawing: to make elements of it
-// takes too long.
+// name -> MB/s of the links of a run; null: of none. Taken from the text of its drawing: to make elements of
+// it takes too long.
 const ratesOf = run => new Map(
     [...(run?.memory_chart ?? '')
          .matchAll(/ data-from="\w+-([^"]*)" data-to="\w+-([^"]*)" data-peak="[^"]*" data-mbps="([^"]*)"/g)]
