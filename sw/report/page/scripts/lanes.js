@@ -49,7 +49,7 @@ export function withFoldedLanes(run) {
     return copy;
   });
   const meanOf = (rows, keys) =>
-      merged(renamed(rows), keys, row => sizes.get(row.port ?? row.name));
+      merged(renamed(rows), keys, row => sizes.get(row.port ?? row.name) ?? 1);  // of `host capture`: 1
   const boundOf = text => text.replace(/^port (.*)$/, (_, name) => `port ${groupOf(name)}`);
   const {stats, bounds, recording} = run;
   const bound = Object.fromEntries(Object.entries(stats.bound).map(
