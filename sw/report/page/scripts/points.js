@@ -20,7 +20,7 @@ export class Points {
     this.constantKeys = keys.filter(key => this.has(key) && this.isConstant(key));
     const figures = this.allNames.filter(name => !keys.includes(name));
     const differ = figures.filter(name => !this.isConstant(name));
-    this.figures = differ.length > 0 ? differ : figures;
+    this.figures = differ.some(name => this.isNumeric(name)) ? differ : figures;
     this.figures.sort((a, b) => this.rank(a) - this.rank(b));
     this.filters = new Map();  // of a name: row => whether the point passes
     this.selected = new Uint8Array(points).fill(1);
