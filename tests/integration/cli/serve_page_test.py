@@ -130,7 +130,7 @@ class LiveTest(ProgramTest):
                          f'.buffer[data-key="allocation.{buffer}"]')
         self.browser.keys(Keys.ENTER)
         for _ in range(20):
-            if re.search(rf"\b{bank}$", self.browser.text("#chart-status")):
+            if re.search(rf": (not into )?{bank}\b", self.browser.text("#chart-status")):
                 break
             self.browser.keys(Keys.ARROW_UP)
         self.browser.keys(Keys.ENTER)
@@ -186,11 +186,14 @@ class Change(LiveTest):
         self.browser.settled()
         self.assertEqual((self.address(), self.value("preloaded")), (first, rates[0]))
         self.assertFalse(self.browser.one("#undo").is_enabled())
-        self.browser.keys(Keys.CONTROL + "y")
-        self.browser.settled()
+        ActionChains(self.browser.driver).key_down(Keys.CONTROL).send_keys("y").key_up(Keys.CONTROL).perform()
+        self.becomes("#board=fpl2003&allocation.left_image=[bank1,+bank1]")
         self.assertEqual(self.value("preloaded"), rates[1])
-        # The link, in another page of the same browser.
+        # An address without a board, and the link, in another page of the same browser.
         self.browser.driver.switch_to.new_window("tab")
+        self.browser.visit(re.sub("#.*", "#board=", address))
+        self.assertEqual(self.address(), first)
+        self.browser.driver.get("about:blank")
         self.browser.visit(address, 1500, 1800)
         self.assertEqual((self.address(), self.value("preloaded")), (last, rate))
         self.browser.driver.close()
@@ -230,6 +233,34 @@ class Change(LiveTest):
         self.browser.run("document.querySelector('#bank-bank0').scrollIntoView({block: 'center'})")
         self.browser.screenshot("live_drag", whole=False)
 
+    def test_a_bank_that_refuses_the_held_buffer_stays_under_the_pointer(self):
+        self.opened("fpl2003", "--set", "allocation.left_lut=bank0")
+        place = "return document.querySelector('#bank-bank0').getBoundingClientRect().top + scrollY"
+        before = self.browser.run(place)
+        handle = self.browser.one('.buffer[data-key="allocation.right_lut"] .handle')
+        chain = ActionChains(self.browser.driver, duration=20).click_and_hold(handle)
+        chain.move_by_offset(6, 6).move_to_element(self.browser.one("#bank-bank0")).perform()
+        self.browser.until("return document.querySelector('.refused')")
+        self.assertIn("set fpga.tables to joint", self.browser.text("#chart-status"))
+        self.assertEqual(self.browser.run(place), before)
+        self.browser.keys(Keys.ESCAPE)
+        ActionChains(self.browser.driver).release().perform()
+        self.browser.settled()
+        self.assertEqual(self.browser.all(".refused"), [])
+
+    def test_a_joint_table_is_dragged_as_one(self):
+        self.opened("two-banks")
+        self.drag("left_lut", None)
+        self.assertEqual(self.holders()["bank2"], ["left_lut"])
+        self.is_as_run()
+
+    def test_lanes_in_the_whole_computer(self):
+        self.opened("eight-banks-four-lanes")
+        self.browser.choose("view", "camera")
+        self.browser.settled()
+        self.is_as_run("camera")
+        self.assertNotIn("NaN", self.browser.text("#cards"))
+
     def test_banks_are_added_removed_and_changed(self):
         self.opened()
         self.drag("left_lut", None)
@@ -257,6 +288,12 @@ class Change(LiveTest):
         self.browser.settled()
         self.assertEqual(self.browser.text(".problems"), "")
         self.is_as_run()
+        self.browser.choose("key-ssram.banks.bank0.kind", "sdram")
+        self.browser.until("return document.querySelector('.problems').textContent")
+        for word in ("cas_latency", "row_words"):
+            self.assertIn(word, self.browser.text('[data-key="ssram.banks.bank0.kind"] .bad'))
+        self.browser.click("#undo")
+        self.browser.settled()
         self.browser.choose("key-name", NASTY)
         self.browser.until("return document.querySelector('.problems').textContent || "
                            "document.querySelector('.top b').textContent.includes('<')")
@@ -303,6 +340,13 @@ class Ask(LiveTest):
         self.browser.click("#open-point")
         self.becomes("#board=fpl2003&matcher.window=5&matcher.rows=2")
         self.is_as_run()
+        self.browser.click("#to-sweep")  # no figure differs
+        self.browser.choose("sweep-key-1", "name")
+        self.browser.choose("sweep-values-1", "a, b")
+        self.browser.choose("sweep-key-2", "")
+        self.browser.click("#start-sweep")
+        self.browser.until("return document.querySelectorAll('#points tbody tr').length === 2", 60)
+        self.browser.drawn()
 
     def test_a_scene_with_its_truth(self):
         board = ["fpl2003-qvga", "--set", "matcher.disparities=32"]
@@ -324,7 +368,7 @@ class Ask(LiveTest):
         self.browser.run("document.querySelector('#save').closest('details').open = true")
         self.browser.choose("save-name", "other.yaml")
         self.browser.click("#save")
-        self.browser.until("return document.querySelector('#save ~ .note, #save-name ~ .note')")
+        self.browser.until("return document.querySelector('#saved').textContent")
         self.assertEqual(json.loads(self.output("check", self.folder / "other.yaml", "--json"))["window"], 5)
         self.browser.choose("save-name", "mine.yaml")
         self.browser.click("#save")

@@ -27,7 +27,7 @@ function changedLinks(before, now) {
 }
 
 // place(buffer, bank): shows the board with the buffer in that bank, without keeping it; null: the board as
-// it is. drop(buffer, bank, isNew): keeps it. Returns {show, element}.
+// it is. drop(buffer, bank, isNew): keeps it. Returns {show, refuse, element}.
 export function makeChart({place, drop}) {
   const status = h('p', {class: 'note', id: 'chart-status', 'aria-live': 'polite'});
   const target = h('div', {class: 'new-bank', id: 'new-bank'}, 'Drop a buffer here: into a new bank');
@@ -156,7 +156,8 @@ export function makeChart({place, drop}) {
     run = its;
     baseline = parse(with_);
     const focused = document.activeElement?.closest?.('.buffer')?.dataset.key ?? kept;
-    const hadFocus = group.contains(document.activeElement) || kept !== null;
+    const hadFocus = group.contains(document.activeElement) ||
+        (kept !== null && document.activeElement === document.body);
     const left = group.querySelector('.memory')?.scrollLeft;
     group.style.minHeight = `${group.offsetHeight}px`;
     group.replaceChildren();
@@ -188,6 +189,10 @@ export function makeChart({place, drop}) {
     kept = null;
     listChanges(links);
   }
+  // Says why the board is refused that the held buffer would give.
+  function refuse(why) {
+    if (held) status.textContent = `${held.label}: not into ${nameOf(held.bank)}: ${why}`;
+  }
   status.textContent = kIdle;
-  return {show, element};
+  return {show, refuse, element};
 }

@@ -115,11 +115,12 @@ export function makeKeys({keys, schema}, set) {
       for (const {problem} of rows.values()) problem.hidden = true;
       problems.replaceChildren(...all.map(
           ({place, message}) => h('li', null, message.includes(' ') ? message : `${place}: ${message}`)));
-      for (const {key, place, rule} of all) {
+      for (const {key, place, rule, message} of all) {
         const row = rows.get(key) ?? rows.get(place?.replace('--set ', ''));
         if (!row) continue;
+        const text = rows.has(key) ? rule : message;
+        row.problem.textContent = row.problem.hidden ? text : `${row.problem.textContent}\n${text}`;
         row.problem.hidden = false;
-        row.problem.textContent = rule;
         row.row.closest('details').open = true;
       }
     },

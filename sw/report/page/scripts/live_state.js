@@ -30,7 +30,7 @@ export function boardOf(address) {
   const words = new URLSearchParams(address.slice(1));
   const preset = words.get(kBoard);
   const sets = [...words].filter(([key]) => key !== kBoard && key !== kCalibration);
-  return preset && {preset, sets, calibration: words.get(kCalibration) ?? ''};
+  return preset ? {preset, sets, calibration: words.get(kCalibration) ?? ''} : null;
 }
 
 // The command that has the figures of the page.
@@ -79,16 +79,20 @@ export class History {
 const parsed = text => JSON.parse(text.replace(/[A-Za-z][\w-]*/g, '"$&"'));
 const written = value => JSON.stringify(value).replaceAll('"', '').replace(/([:,])/g, '$1 ');
 
-// The change that moves a buffer, such as allocation.left_image[0] or allocation.left_lut.rows[1].
-export function moveOf(settings, buffer, bank) {
+// The changes that move a buffer, such as allocation.left_image[0] or allocation.left_lut.rows[1]. A joint
+// table is the buffer of left_lut, and moves as right_lut too.
+export function movesOf(settings, buffer, bank) {
   const [, key, index, part] = /^([\w.]+?)(?:\[(\d+)\])?(?:\.rows\[(\d+)\])?$/.exec(buffer);
-  const value = parsed(settings.find(each => each.key === key).value);
+  const settingOf = name => settings.find(each => each.key === name).value;
+  const value = parsed(settingOf(key));
   const list = Array.isArray(value) ? [...value] : [value];
   const place = Number(index ?? 0);
   list[place] = part === undefined ?
       bank :
       {rows: list[place].rows.map((other, i) => i === Number(part) ? bank : other)};
-  return [key, written(Array.isArray(value) ? list : list[0])];
+  const text = written(Array.isArray(value) ? list : list[0]);
+  const isJoint = key === 'allocation.left_lut' && settingOf('fpga.tables') === 'joint';
+  return [[key, text], ...isJoint ? [['allocation.right_lut', text]] : []];
 }
 
 export const bankNames = settings => [...new Set(

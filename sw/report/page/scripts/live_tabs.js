@@ -20,10 +20,16 @@ export function makePictures(boardNow, fail) {
   ].map(([value, text]) => h('option', {value}, text)));
   const shown = h('div');
   const state = h('p', {class: 'note', role: 'status'});
+  let newest = null;  // the pictures that were asked for last
+  const names = new Map();  // id of a picture that was sent -> that of its file
   async function show(pictures) {
+    newest = pictures;
+    fail(null);
     state.textContent = 'The board works on the pair …';
+    const board = boardNow();
     try {
-      const run = await ask('run', boardNow(), {source: 'preloaded', frames: 1, pictures});
+      const run = await ask('run', board, {source: 'preloaded', frames: 1, pictures});
+      if (pictures !== newest) return;
       shown.replaceChildren();
       const group = addGroup(shown, 'The last frame');
       addPictureOf(group, run);
@@ -37,7 +43,8 @@ export function makePictures(boardNow, fail) {
                     accuracy.bad_2_percent,
                     2)} % by more than 2; ${percent(accuracy.answered_percent / 100)} are answered`
       ].filter(Boolean);
-      state.textContent = `${texts.join('; ')}.`;
+      const sets = board.sets.map(([key, value]) => `, ${key}: ${value}`).join('');
+      state.textContent = `${texts.join('; ')}. The board: ${board.preset}${sets}.`;
       if (truth) {
         addPicture(group, {
           id: 'truth',
@@ -49,18 +56,25 @@ export function makePictures(boardNow, fail) {
         });
       }
     } catch (error) {
+      if (pictures !== newest) return;
       state.textContent = '';
-      fail(error);
+      // The server names its own copy of a file.
+      fail(new Error(error.message.replace(/'[^']*\/(\w+)'/g, (text, id) => names.get(id) ?? text)));
     }
+  }
+  async function sent(file) {
+    const id = await sendPicture(file);
+    names.set(id, file.name);
+    return id;
   }
   async function showFiles() {
     const [left, right, truth] = files.map(({files: [file]}) => file);
     if (!left || !right) return fail(new Error('Choose a left and a right picture first.'));
     try {
-      const sent = {left: await sendPicture(left), right: await sendPicture(right)};
-      if (truth) Object.assign(sent, {truth: await sendPicture(truth), truth_scale: Number(scale.value)});
-      if (fit.value) sent.fit = fit.value;
-      await show(sent);
+      const pair = {left: await sent(left), right: await sent(right)};
+      if (truth) Object.assign(pair, {truth: await sent(truth), truth_scale: Number(scale.value)});
+      if (fit.value) pair.fit = fit.value;
+      await show(pair);
     } catch (error) {
       fail(error);
     }
@@ -111,6 +125,7 @@ export function makeSweep({keys}, now, open, fail) {
     const [board, source, frames] = now();
     const varied = Object.keys(vary);
     const fixedSets = board.sets.filter(([key]) => !varied.includes(key));
+    fail(null);
     bar.hidden = false;
     try {
       const {database} = await askLong(

@@ -1,6 +1,6 @@
 // The live page: a board that is changed in the browser, and what each change gives.
 import {addChart, addHead, htmlTable} from './card.js';
-import {button, choice, commandLine, controls, download, fileName, folded, h, note} from './dom.js';
+import {button, choice, commandLine, controls, download, fileName, folded, h} from './dom.js';
 import {againstBound, headlineOf, lostPixels, rateOf, waitsOf, waitText} from './findings.js';
 import {
     count, fixed, gainText, lossText, percent, rate, rateWith, shortened, signed, whole,
@@ -9,7 +9,7 @@ import {withFoldedLanes} from './lanes.js';
 import {makeChart} from './live_chart.js';
 import {makeKeys} from './live_keys.js';
 import {ask, askLong, boardFiles, boardOfFile, inTurn, Refused} from './live_server.js';
-import {addressOf, boardOf, commandOf, History, moveOf, splitSet, withSets} from './live_state.js';
+import {addressOf, boardOf, commandOf, History, movesOf, splitSet, withSets} from './live_state.js';
 import {makePictures, makeSweep} from './live_tabs.js';
 import {showDatabase} from './page_database.js';
 import {addCards} from './page_run.js';
@@ -119,8 +119,14 @@ export function showLive(page, {live, database, version}) {
     accept: '.yaml',
     id: 'board-file',
     'aria-label': 'Open a board file',
-    change: async event => event.target.files[0] && openYaml(await event.target.files[0].text())
+    change: async event => {
+      const [chosen] = event.target.files;
+      if (!chosen) return;
+      await openYaml(await chosen.text());
+      event.target.value = '';  // so that the same file may be opened again
+    }
   });
+  const saved = h('span', {class: 'note', id: 'saved', role: 'status'});
   const saveAs =
       h('input',
         {type: 'text', id: 'save-name', value: 'board.yaml', size: 14, 'aria-label': 'Name of the file'});
@@ -137,30 +143,32 @@ export function showLive(page, {live, database, version}) {
           button(
               'Copy link',
               async event => {
-                await navigator.clipboard.writeText(location.href).catch(() => {});
-                event.target.textContent = 'Copied: it is the address of this page';
+                const {target} = event;
+                const isCopied =
+                    await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+                target.textContent = `${isCopied ? 'Copied' : 'Copy it'}: it is the address of this page`;
               },
               {id: 'copy-link'}),
           button(
               'Board as YAML',
-              () => download(
+              () => current() && download(
                   `${fileName(current().run.stats.board)}.yaml`, 'text/yaml', current().run.config_yaml),
               {id: 'yaml'}),
           button(
-              'Report', async () => download('report.html', 'text/html', await reportOf({
+              'Report', async () => current() && download('report.html', 'text/html', await reportOf({
                                                format: 2,
                                                version,
                                                kind: 'run',
                                                text: '',
                                                run: {
                                                  folder: 'the live board',
-                                                 command: commandOf(history.board, view, frames[view]),
+                                                 command: commandOf(current().board, view, frames[view]),
                                                  ...current().run,
                                                  knobs: current().run.knobs
                                                }
                                              })),
               {id: 'report'}),
-          saveAs, button('Save in the folder', save, {id: 'save'})),
+          saveAs, button('Save in the folder', save, {id: 'save'}), saved),
       command);
   const board = h('div', {class: 'live'}, h('div', {class: 'cards'}, chart.element), keys.element);
   const pictures = makePictures(() => history.board, openError);
@@ -233,7 +241,7 @@ export function showLive(page, {live, database, version}) {
   function moved(buffer, bank, isNew) {
     const {settings} = (runs.preloaded ?? runs.camera).run;
     const more = isNew ? [[`ssram.banks.${bank}`, '{}']] : [];
-    return withSets(history.board, [...more, moveOf(settings, buffer, bank)]);
+    return withSets(history.board, [...more, ...movesOf(settings, buffer, bank)]);
   }
   async function openYaml(text) {
     try {
@@ -255,16 +263,18 @@ export function showLive(page, {live, database, version}) {
     }
   }
   async function save() {
+    saved.textContent = '';
     try {
       const {path} = await ask('save', history.board, {name: saveAs.value});
       message.textContent = '';
-      saveAs.after(note(`Saved: ${path}`));
+      saved.textContent = `Saved: ${path}`;
     } catch (error) {
       openError(error);
     }
   }
+  // null: nothing has gone wrong.
   function openError(error) {
-    message.textContent = error.message;
+    message.textContent = error?.message ?? '';
   }
 
   // Questions. The answers of all boards of a drag are shown; those of the board itself stay.
@@ -279,9 +289,12 @@ export function showLive(page, {live, database, version}) {
   }
   function failed(its, error) {
     if (!isOf({board: its}, shown)) return;
-    if (error instanceof Refused && isOf({board: its}, history.board)) keys.refuse(error.problems);
-    message.textContent = `This board is refused: ${error.message}`;
     page.classList.add('refused');
+    // A text above the chart would move the banks away from the pointer.
+    if (!isOf({board: its}, history.board)) return chart.refuse(error.message);
+    if (!(error instanceof Refused)) return openError(error);
+    keys.refuse(error.problems);
+    message.textContent = `This board is refused: ${error.message}`;
   }
   const more = source => ({source, frames: frames[source]});
   const askCore = inTurn(
@@ -293,7 +306,8 @@ export function showLive(page, {live, database, version}) {
   let drawn = '';  // the board and the view of the cards
   const askCards = inTurn(
       ([its, source], signal) => ask('run', its, {...more(source), record: true}, signal),
-      ([its, source], run) => isOf({board: its}, history.board) && source === view && drawCards(its, run),
+      ([its, source], run) => isOf({board: its}, history.board) && source === view &&
+          drawn !== `${source} ${addressOf(its)}` && drawCards(its, run),
       ([its], error) => failed(its, error));
   let quiet = 0;
   function askWhenQuiet() {
@@ -304,6 +318,7 @@ export function showLive(page, {live, database, version}) {
 
   function showBoard(its) {
     shown = its;
+    page.classList.remove('refused');
     askCore(its);
     if (its === history.board) askComputer(its);
     markWaiting();
@@ -311,7 +326,6 @@ export function showLive(page, {live, database, version}) {
   function changed() {
     previous = settled;
     question?.abort();
-    page.classList.remove('refused');
     message.textContent = '';
     keys.refuse([]);
     showBoard(history.board);
@@ -397,11 +411,14 @@ export function showLive(page, {live, database, version}) {
 
   // What each single change gains.
   async function askGains() {
+    openError(null);
     question?.abort();
     const controller = question = new AbortController();
     const bar = h('progress', {'aria-label': 'Single changes are tried'});
     const text = h('span');
     gainsHost.replaceChildren(controls(bar, text, button('Stop', () => controller.abort())));
+    open(0);
+    gainsHost.scrollIntoView({block: 'center'});
     const [its, source] = [history.board, view];
     try {
       const knobs = await askLong('explain', its, {source}, controller.signal, (done, of, said) => {
