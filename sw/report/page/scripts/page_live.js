@@ -314,7 +314,8 @@ export function showLive(page, {live, database, version}) {
   let drawn = '';  // the board and the view of the cards
   const askCards = inTurn(
       ([its, source], signal) => ask('run', its, {...more(source), record: true}, signal),
-      ([its, source], run) => isOf({board: its}, history.board) && source === view && drawCards(its, run),
+      ([its, source], run) => isOf({board: its}, history.board) && source === view &&
+          drawn !== `${source} ${addressOf(its)}` && drawCards(its, run),
       ([its], error) => failed(its, error));
   let quiet = 0;
   function askWhenQuiet() {
