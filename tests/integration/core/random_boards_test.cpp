@@ -194,7 +194,7 @@ void expect_boards_equal_references(Fidelity fidelity, bool with_knobs, std::uin
   std::vector<ChildWork> jobs;
   for (const std::uint64_t seed : seeds)
     jobs.push_back([=] { return compare(board_of(seed, with_knobs), fidelity); });
-  const std::vector<ChildResult> results = run_in_children(jobs, processors());
+  const std::vector<ChildResult> results = run_in_children(jobs, processors(), std::chrono::seconds(200));
   std::uint64_t hangs = 0;
   for (std::size_t job = 0; job < results.size(); ++job) {
     if (results[job].text == kHang) {

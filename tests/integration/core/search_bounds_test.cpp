@@ -59,7 +59,8 @@ TEST(SearchBounds, AreNotAboveTheFramesOfRandomBoards) {
   // Lanes that share the openings of a row, each in another strip.
   jobs.push_back([] { return bounds_that_are_wrong(20'758, true); });
   const auto processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  for (const ChildResult& result : run_in_children(jobs, processors)) EXPECT_TRUE(result.ok()) << result.text;
+  for (const ChildResult& result : run_in_children(jobs, processors, std::chrono::seconds(200)))
+    EXPECT_TRUE(result.ok()) << result.text;
 }
 
 TEST(SearchBounds, CountTheAccessesOfIdentityTablesWithoutTables) {

@@ -320,7 +320,8 @@ TEST_P(RandomComputers, HaveTheSameTimeLineAtEachFidelity) {
       });
     }
   }
-  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
+  const std::vector<test::ChildResult> results =
+      test::run_in_children(jobs, processors(), std::chrono::seconds(200));
   for (std::size_t job = 0; job < results.size(); ++job) {
     const std::string seed = fmt::format("seed {}: ", job / kFidelities.size());
     const std::string& cycle = results[job - job % kFidelities.size()].text;
@@ -412,7 +413,8 @@ TEST(RandomSteadyRates, AreWithinTheirUncertaintyOfTheRateOfManyFrames) {
   std::vector<test::ChildWork> jobs;
   for (std::uint64_t seed = 0; seed < computers() / 4; ++seed)  // 400 frames take long under the sanitizers
     jobs.push_back([seed] { return steady_problems(seed); });
-  const std::vector<test::ChildResult> results = test::run_in_children(jobs, processors());
+  const std::vector<test::ChildResult> results =
+      test::run_in_children(jobs, processors(), std::chrono::seconds(200));
   for (std::size_t seed = 0; seed < results.size(); ++seed)
     EXPECT_TRUE(results[seed].ok()) << "seed " << seed << ":\n" << results[seed].text;
 }
@@ -443,7 +445,8 @@ TEST(SaturatedLocalBus, StaysBelowItsBoundAndComesCloseToItWithAnyClocks) {
     });
   }
   int close = 0;
-  for (const test::ChildResult& result : test::run_in_children(jobs, processors())) {
+  for (const test::ChildResult& result :
+       test::run_in_children(jobs, processors(), std::chrono::seconds(200))) {
     const double share = std::atof(result.text.c_str());
     EXPECT_GT(share, 0.65) << result.text;
     if (share > 0.93) ++close;
