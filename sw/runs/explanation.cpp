@@ -18,8 +18,6 @@
 #include "models/fpga/frame_geometry.h"
 #include "platform/config/board_area.h"
 #include "platform/figures/derived_figures.h"
-#include "platform/figures/proven_rate.h"
-#include "sw/explore/optimise/key_effects.h"
 #include "sw/explore/optimise/workers.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
@@ -386,127 +384,37 @@ const platform::BoardConfig& Explanation::board_of(std::size_t number) const {
   return number == 0 ? board_ : knobs_.possible.at(number - 1).board;
 }
 
-// The boards with these numbers, in all processes. `camera`: whole computers.
-Explanation::Outcomes Explanation::simulate(const std::vector<std::size_t>& numbers, bool camera,
-                                            PointSimulator& simulator, ProgressLine* progress) {
-  explore::PointRun run = run_;
-  run.camera = camera;
-  const auto work = [&](std::size_t place) {
-    const std::size_t number = numbers[place];
+bool Explanation::simulate(PointSimulator simulator) {
+  ProgressLine progress(
+      fmt::format("{} boards are simulated, each for {} frames", outcomes_.size(), frames()),
+      stepped_text(board_, tables_, run_.camera));
+  const auto work = [&](std::size_t number) {
     try {
-      const bool with_core_waits = camera && number == 0;
-      return message_of(simulator(explore::make_point(number, board_of(number), run), {}, with_core_waits));
+      const bool with_core_waits = run_.camera && number == 0;
+      return message_of(simulator(explore::make_point(number, board_of(number), run_), {}, with_core_waits));
     } catch (const std::exception& error) {
       return message_of(fmt::format("{}: {}", board_of(number).name, error.what()));
     }
   };
-  Outcomes found(outcomes_.size());
   std::size_t done = 0;
-  const auto take = [&](std::size_t place, const std::string& message) {
-    const std::size_t number = numbers[place];
+  const auto take = [&](std::size_t number, const std::string& message) {
     const Json document = Json::from_cbor(message);
     ++done;
     if (document.contains("failure")) {
-      found[number] = {{}, document["failure"]};
+      outcomes_[number] = {{}, document["failure"]};
       return;
     }
     const explore::Figures figures = figures_of_message(document);
-    found[number] = {NamedFigures(figures), ""};
+    outcomes_[number] = {NamedFigures(figures), ""};
     if (number == 0) blames_ = figures.blame;
   };
-  explore::do_in_processes(numbers.size(), std::max(1U, std::thread::hardware_concurrency()), work, take,
+  explore::do_in_processes(outcomes_.size(), std::max(1U, std::thread::hardware_concurrency()), work, take,
                            [&] {
-                             if (progress != nullptr) {
-                               progress->show(done, numbers.size(), [&](double seconds) {
-                                 return progress_text(done, numbers.size(), "boards simulated", seconds);
-                               });
-                             }
+                             progress.show(done, outcomes_.size(), [&](double seconds) {
+                               return progress_text(done, outcomes_.size(), "boards simulated", seconds);
+                             });
                              return !process::interrupted();
                            });
-  return found;
-}
-
-// Of boards that do the same at the same time, one is simulated as a computer. The others differ from it in
-// what their cores access, which is known from their cores alone.
-void Explanation::simulate_computers(PointSimulator& simulator) {
-  std::vector<std::size_t> all(outcomes_.size());
-  std::iota(all.begin(), all.end(), 0);
-  const Outcomes cores = simulate(all, false, simulator, nullptr);
-  std::map<std::string, std::size_t> first_of_key;
-  std::vector<std::size_t> alike(all.size());  // the board that is simulated for each
-  std::vector<std::size_t> firsts;
-  for (const std::size_t number : all) {
-    const platform::BoardConfig& board = board_of(number);
-    const bool is_known = cores[number] && cores[number]->failure.empty();
-    const bool is_apart =
-        is_known && platform::frames_are_apart(board, platform::frame_accesses(board, tables_));
-    const std::string key =
-        explore::computer_time_key(board, is_apart ? cores[number]->figures.text("frame_cycles") : "");
-    alike[number] = is_known ? first_of_key.emplace(key, number).first->second : number;
-    if (alike[number] == number) firsts.push_back(number);
-  }
-  ProgressLine progress(fmt::format("{} boards are simulated, each for {} frames", firsts.size(), frames()),
-                        stepped_text(board_, tables_, true));
-  outcomes_ = simulate(firsts, true, simulator, &progress);
-  std::vector<std::size_t> left;  // a failure names what is of its board alone
-  for (const std::size_t number : all) {
-    const std::optional<Outcome>& its = outcomes_[alike[number]];
-    if (alike[number] == number || !its) continue;
-    if (its->failure.empty()) {
-      outcomes_[number] = {figures_like(alike[number], number, cores), ""};
-    } else {
-      left.push_back(number);
-    }
-  }
-  Outcomes others = simulate(left, true, simulator, &progress);
-  for (const std::size_t number : left) outcomes_[number] = std::move(others[number]);
-}
-
-// The figures of a computer that rate_of() and busiest_bank_of() need, from those of one that is alike.
-NamedFigures Explanation::figures_like(std::size_t simulated, std::size_t number,
-                                       const Outcomes& cores) const {
-  const NamedFigures& from = outcomes_[simulated]->figures;
-  NamedFigures figures = from;
-  const NamedFigures& core = cores[number]->figures;
-  const NamedFigures& from_core = cores[simulated]->figures;
-  const std::vector<std::string> from_banks = explore::banks_by_buffers(board_of(simulated));
-  const std::vector<std::string> banks = explore::banks_by_buffers(board_of(number));
-  std::uint64_t memory_pj = 0;
-  for (const platform::BankConfig& bank : board_of(number).banks) {
-    const std::string path = "banks." + bank.name + '.';
-    const auto place = std::find(banks.begin(), banks.end(), bank.name) - banks.begin();
-    const bool is_used = place < static_cast<std::ptrdiff_t>(banks.size());
-    const std::string from_path = is_used ? "banks." + from_banks[static_cast<std::size_t>(place)] + '.' : "";
-    const auto take = [&](const std::string& name) {
-      const std::int64_t value =
-          from.integer(from_path + name) + core.integer(path + name) - from_core.integer(from_path + name);
-      figures.set(path + name, is_used ? value : 0);
-      return static_cast<std::uint64_t>(value);
-    };
-    for (const char* const name : {"reads", "writes", "busy_cycles"}) take(name);
-    if (!is_used) continue;
-    const auto same = [&](const char* name) {
-      return static_cast<std::uint64_t>(from.integer(from_path + name));
-    };
-    memory_pj +=
-        memory::energy_pj(energy_of(bank), static_cast<std::uint64_t>(from.integer("energy.time_ps")),
-                          take("energy.accesses"), same("energy.rows_opened"), same("energy.refreshes"));
-  }
-  figures.set("energy.memory_mj_per_frame",
-              static_cast<double>(memory_pj) / 1e9 / static_cast<double>(from.integer("frames")));
-  return figures;
-}
-
-bool Explanation::simulate(PointSimulator simulator) {
-  if (run_.camera) {
-    simulate_computers(simulator);
-  } else {
-    std::vector<std::size_t> all(outcomes_.size());
-    std::iota(all.begin(), all.end(), 0);
-    ProgressLine progress(fmt::format("{} boards are simulated, each for {} frames", all.size(), frames()),
-                          stepped_text(board_, tables_, false));
-    outcomes_ = simulate(all, false, simulator, &progress);
-  }
   if (!outcomes_[0]) return false;
   now_ = rate_of(0);
   if (!now_.failure.empty()) throw std::runtime_error(now_.failure);

@@ -16,8 +16,6 @@
 
 namespace stereotlm::runs {
 
-class ProgressLine;
-
 // What the time of a frame goes to, in percent of it. The shares sum to 100.
 struct Budget {
   double bound = 0;   // the frame takes as long as its matcher and ports need for it
@@ -36,7 +34,6 @@ class NamedFigures {
   std::string text(const std::string& name) const;
   std::int64_t integer(const std::string& name) const;
   double real(const std::string& name) const;
-  void set(const std::string& name, platform::KeyValue value) { values_[name] = std::move(value); }
 
  private:
   std::map<std::string, platform::KeyValue> values_;
@@ -142,18 +139,7 @@ class Explanation {
   const std::vector<platform::BlameRow>& group_blames() const { return group_blames_; }
 
  private:
-  // What the simulation of a board has given.
-  struct Outcome {
-    NamedFigures figures;
-    std::string failure;  // the reason if it has failed; else empty
-  };
-  using Outcomes = std::vector<std::optional<Outcome>>;  // of the board itself, then of the steps
-
   const platform::BoardConfig& board_of(std::size_t number) const;
-  Outcomes simulate(const std::vector<std::size_t>& numbers, bool camera, PointSimulator& simulator,
-                    ProgressLine* progress);
-  void simulate_computers(PointSimulator& simulator);
-  NamedFigures figures_like(std::size_t simulated, std::size_t number, const Outcomes& cores) const;
   Rate rate_of(std::size_t number) const;
   BusiestBank busiest_bank_of(std::size_t number) const;
   double busy_percent(const std::string& resource) const;
@@ -166,7 +152,12 @@ class Explanation {
   const platform::Tables& tables_;
   explore::PointRun run_;
   explore::KnobSteps knobs_;
-  Outcomes outcomes_;
+  // What the simulation of a board has given.
+  struct Outcome {
+    NamedFigures figures;
+    std::string failure;  // the reason if it has failed; else empty
+  };
+  std::vector<std::optional<Outcome>> outcomes_;  // of the board itself, then of the steps
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]
   NamedFigures figures_;

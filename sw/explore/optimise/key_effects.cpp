@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <functional>
 #include <map>
+#include <set>
 
 #include "models/memory/memory_config.h"
 #include "platform/config/board_keys.h"
@@ -83,80 +82,45 @@ const KeyEffects& effects_of_key(const std::string& schema_path) {
 
 namespace {
 
-using Keys = std::vector<const platform::Key*>;
-
-// Those that no bank and no allocation has.
-Keys keys_that(const std::function<bool(const KeyEffects& effects)>& have) {
-  Keys keys;
-  for (const platform::Key& key : platform::board_keys()) {
-    const bool is_placed = key.path.rfind("ssram.", 0) == 0 || key.path.rfind("allocation.", 0) == 0;
-    if (platform::has_value(key) && !is_placed && have(effects_of_key(key.path))) keys.push_back(&key);
-  }
-  return keys;
-}
-
-std::string keys_text(const BoardConfig& board, const Keys& keys) {
-  std::string text;
-  for (const platform::Key* const key : keys)
-    text += (has_key(board, *key) ? platform::value_text(platform::value_of(*key, board)) : "") + '\n';
-  return text;
-}
-
 // The values of the keys that change the cycles, without those of banks and of allocations.
 std::string keys_text(const BoardConfig& board) {
-  static const Keys kKeys = keys_that([](const KeyEffects& effects) { return effects.core_cycles; });
-  return keys_text(board, kKeys);
-}
-
-// "left_image[0] 0" and so on, with the place of the bank among banks_by_buffers(). `text_of_bank` is added
-// to each.
-template <typename Text>
-std::string buffers_text(const BoardConfig& board, const Text& text_of_bank) {
-  const std::vector<std::string> names = banks_by_buffers(board);
+  static const std::vector<const platform::Key*> kKeys = [] {
+    std::vector<const platform::Key*> keys;
+    for (const platform::Key& key : platform::board_keys()) {
+      const bool is_placed = key.path.rfind("ssram.", 0) == 0 || key.path.rfind("allocation.", 0) == 0;
+      if (platform::has_value(key) && !is_placed && effects_of_key(key.path).core_cycles)
+        keys.push_back(&key);
+    }
+    return keys;
+  }();
   std::string text;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-    const auto has_name = [&buffer](const platform::BankConfig& bank) { return bank.name == buffer.bank; };
-    const auto bank = std::find_if(board.banks.begin(), board.banks.end(), has_name);
-    const auto place = std::find(names.begin(), names.end(), buffer.bank) - names.begin();
-    text += fmt::format("{} {}{}\n", buffer.label(), place, text_of_bank(*bank));
-  }
+  for (const platform::Key* const key : kKeys)
+    text += platform::value_text(platform::value_of(*key, board)) + '\n';
   return text;
 }
 
 }  // namespace
 
-std::vector<std::string> banks_by_buffers(const BoardConfig& board) {
-  std::vector<std::string> names;
-  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
-    if (std::find(names.begin(), names.end(), buffer.bank) == names.end()) names.push_back(buffer.bank);
-  }
-  return names;
-}
-
 std::string core_cycles_key(const BoardConfig& board) {
-  return keys_text(board) + buffers_text(board, [](const platform::BankConfig& bank) {
-           std::string text = fmt::format(" {} {}", static_cast<int>(bank.kind), bank.turnaround_cycles);
-           if (!bank.sdram) return text;
-           const memory::SdramTiming& its = *bank.sdram;
-           return text + fmt::format(" {} {} {} {} {} {} {}", its.cas_latency, its.row_words,
-                                     its.internal_banks, its.activate_cycles, its.precharge_cycles,
-                                     its.refresh_interval_cycles.value_or(0), its.refresh_cycles);
-         });
-}
-
-std::string computer_time_key(const BoardConfig& board, const std::string& apart_cycles) {
-  static const Keys kKeys =
-      keys_that([](const KeyEffects& effects) { return effects.computer_time && !effects.core_cycles; });
-  const std::string text = keys_text(board, kKeys);
-  if (apart_cycles.empty()) return text + core_cycles_key(board);
-  // The host sees of the core when its frames end, and in which cycles words are counted.
-  return text +
-         fmt::format("apart {} {} {} {} {}\n", board.image.width, board.image.height, board.fpga.joint_tables,
-                     board.fpga.pipeline_latency_cycles, apart_cycles) +
-         buffers_text(board, [](const platform::BankConfig& bank) {
-           return fmt::format(" {} {}", memory::traits_of(bank.kind).read_latency_cycles,
-                              bank.turnaround_cycles);
-         });
+  std::string text = keys_text(board);
+  std::map<std::string, const platform::BankConfig*> banks;
+  for (const platform::BankConfig& bank : board.banks) banks.emplace(bank.name, &bank);
+  std::set<std::string> named;
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+    text += fmt::format("{} {}", buffer.label(), buffer.bank);
+    if (named.insert(buffer.bank).second) {
+      const platform::BankConfig& bank = *banks.at(buffer.bank);
+      text += fmt::format(" {} {}", static_cast<int>(bank.kind), bank.turnaround_cycles);
+      if (bank.sdram) {
+        const memory::SdramTiming& its = *bank.sdram;
+        text += fmt::format(" {} {} {} {} {} {} {}", its.cas_latency, its.row_words, its.internal_banks,
+                            its.activate_cycles, its.precharge_cycles,
+                            its.refresh_interval_cycles.value_or(0), its.refresh_cycles);
+      }
+    }
+    text += '\n';
+  }
+  return text;
 }
 
 std::string waitless_key(const BoardConfig& board) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "platform/config/board_config.h"
 
@@ -22,15 +21,8 @@ struct KeyEffects {
 const KeyEffects& effects_of_key(const std::string& schema_path);
 
 // Boards with the same text take the same cycles for each frame of the core alone. Of the banks only those
-// that hold a buffer matter, and not their names.
+// that hold a buffer matter.
 std::string core_cycles_key(const platform::BoardConfig& board);
-// Boards with the same text do the same at the same time as whole computers, but for the accesses of the core
-// if its frames are apart. `apart_cycles`: the lengths of the frames of the core alone if they are apart
-// (platform::frames_are_apart()); else empty.
-std::string computer_time_key(const platform::BoardConfig& board, const std::string& apart_cycles);
-// The names of the banks that hold a buffer, in the order of their first buffers. Of boards with the same
-// core_cycles_key() or computer_time_key(), banks at the same place hold the same buffers.
-std::vector<std::string> banks_by_buffers(const platform::BoardConfig& board);
 // The same if no port ever waits for a bank: of the banks only the read latency of each buffer matters.
 std::string waitless_key(const platform::BoardConfig& board);
 
