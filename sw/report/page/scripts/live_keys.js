@@ -1,7 +1,7 @@
 // The keys of the board on the live page, in the groups of board files.
 import {button, folded, h} from './dom.js';
 import {capital} from './format.js';
-import {bankNames, newBankName, removalOf} from './live_state.js';
+import {newBankName, removalOf} from './live_state.js';
 
 const kFirst = ['matcher', 'allocation', 'ssram', 'fpga'];
 const schemaPath = path => path.replace(/^ssram\.banks\.[^.]+/, 'ssram.banks.NAME');
@@ -123,7 +123,6 @@ export function makeKeys({keys, schema}, set) {
         row.problem.hidden = false;
         row.row.closest('details').open = true;
       }
-    },
-    bankNames: () => bankNames(settings)
+    }
   };
 }

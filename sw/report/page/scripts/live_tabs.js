@@ -1,5 +1,5 @@
 // Two tabs of the live page: the board on pictures, and a sweep of one or two of its keys.
-import {addGroup, addHead} from './card.js';
+import {addGroup} from './card.js';
 import {button, controls, h, note} from './dom.js';
 import {fixed, percent} from './format.js';
 import {ask, askLong, sendPicture} from './live_server.js';

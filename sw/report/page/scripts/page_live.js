@@ -1,13 +1,13 @@
 // The live page: a board that is changed in the browser, and what each change gives.
 import {addChart, addHead, htmlTable} from './card.js';
 import {button, choice, commandLine, controls, download, fileName, folded, h} from './dom.js';
-import {againstBound, headlineOf, lostPixels, rateOf, waitsOf, waitText} from './findings.js';
-import {
-    count, fixed, gainText, lossText, percent, rate, rateWith, shortened, signed, whole,
-} from './format.js';
+import {headlineOf} from './findings.js';
+import {count, gainText, percent, rate, shortened} from './format.js';
 import {withFoldedLanes} from './lanes.js';
 import {makeChart} from './live_chart.js';
+import {differenceTable, figureCells} from './live_figures.js';
 import {makeKeys} from './live_keys.js';
+import {reportOf} from './live_report.js';
 import {ask, askLong, boardFiles, boardOfFile, inTurn, Refused} from './live_server.js';
 import {addressOf, boardOf, commandOf, History, movesOf, splitSet, withSets} from './live_state.js';
 import {makePictures, makeSweep} from './live_tabs.js';
@@ -19,71 +19,6 @@ const kQuiet = 150;
 const kLate = 1500;
 const kViews = [['preloaded', 'the core alone'], ['camera', 'the whole computer']];
 
-// [name, source of the run, number of a run, text of a number, what to say beside it]
-const boundNote = run => againstBound(rateOf(run), rateOf(run).limit, rateOf(run).by);
-const kFigures = [
-  ['core frames/s', 'preloaded', run => run.stats.frames_per_second.core, rate, boundNote],
-  [
-    'computer frames/s', 'camera', run => rateOf(run).now,
-    (number, run) => rateWith(number, run?.stats.frames_per_second.steady_uncertainty),
-    run => [rateOf(run).kind + lossText(lostPixels(run)), exactText(run), boundNote(run)]
-               .filter(Boolean)
-               .join('; ')
-  ],
-  [
-    'slices %', 'preloaded', run => run.area.slices_percent, number => fixed(number, 2),
-    run => `${whole(run.area.slices)} slices, ${count(run.area.block_rams, 'block RAM')}, ${
-        count(run.area.multipliers, 'multiplier')} of the ${run.area.device.name}${
-        run.area.fits ? '' : ': does not fit'}`
-  ],
-  [
-    'pins', 'preloaded', run => run.pins, whole,
-    run => `${run.banks_used} of ${count(run.banks.length, 'bank')} used`
-  ],
-  [
-    'mJ a frame', 'preloaded', run => run.stats.energy.memory_mj_per_frame, number => fixed(number, 2),
-    run => `the memories alone, ${fixed(run.stats.energy.megabytes_per_frame, 1)} MB a frame`
-  ],
-  [
-    'waits %', 'preloaded', run => 100 * (waitsOf(run)[0]?.share ?? 0), number => fixed(number, 2),
-    run => waitsOf(run).length ? waitText(waitsOf(run)[0]) : 'no port waits'
-  ],
-];
-const exactText = ({stats: {frames_per_second: rates}}) => rates.exact !== undefined &&
-    `exactly ${rates.exact_delivered_frames} in ${rates.exact_camera_frames} camera frames`;
-
-// All numbers of stats.json, of A and now.
-function differenceTable(a, now) {
-  const flat = (value, path = '') => Object.entries(value).flatMap(
-      ([key, its]) => its !== null && typeof its === 'object' ? flat(its, `${path}${its.name ?? key}.`) :
-          typeof its === 'number' ? [[path + key, its]] :
-                                    []);
-  const before = new Map(flat(a.stats));
-  const rows = flat(now.stats)
-                   .filter(([path, its]) => before.has(path) && before.get(path) !== its)
-                   .map(([path, its]) => [path, before.get(path), its, its - before.get(path)]);
-  return [['figure', 'A', 'now', 'difference'], rows];
-}
-
-// The text of this page with other data, as a file that needs no server.
-async function reportOf(data) {
-  const stream = new Blob([JSON.stringify(data)]).stream().pipeThrough(new CompressionStream('deflate'));
-  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
-  const letters = [];
-  for (let at = 0; at < bytes.length; at += 0x8000)
-    letters.push(String.fromCharCode(...bytes.subarray(at, at + 0x8000)));
-  const style = document.querySelector('style').textContent;
-  const script = document.querySelector('script[type=module]').textContent;
-  return `<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n` +
-      `<meta name="generator" content="stereotlm report">\n` +
-      `<meta name="viewport" content="width=device-width, initial-scale=1">\n` +
-      `<title>stereotlm report</title>\n` +
-      `<link rel="icon" href="data:,">\n<style>\n${
-             style}</style>\n</head>\n<body>\n<main id="page"></main>\n` +
-      `<script type="text/plain" id="data">${btoa(letters.join(''))}</script>\n` +
-      `<script type="module">\n${script}</script>\n</body>\n</html>\n`;
-}
-
 export function showLive(page, {live, database, version}) {
   const frames = {preloaded: live.core_frames, camera: live.computer_frames};
   const first = boardOf(location.hash) ?? {...live, sets: live.sets.map(splitSet)};
@@ -91,7 +26,7 @@ export function showLive(page, {live, database, version}) {
       new History({preset: first.preset, sets: first.sets, calibration: first.calibration}, () => changed());
   const runs = {preloaded: null, camera: null};  // the newest answers: {board, run}
   let view = 'preloaded';
-  let chartOf = null;     // the answer that the chart shows
+  let chartOf = null;  // the answer that the chart shows
   let isChartDue = false;
   let shown = null;  // the board that is asked for: that of the history, or while a buffer is dragged another
   let settled = {};  // of `runs` those of boards of the history
@@ -155,22 +90,25 @@ export function showLive(page, {live, database, version}) {
               {id: 'copy-link'}),
           button(
               'Board as YAML',
-              () => current() && download(
-                  `${fileName(current().run.stats.board)}.yaml`, 'text/yaml', current().run.config_yaml),
+              () =>
+                  current() &&
+                  download(
+                      `${fileName(current().run.stats.board)}.yaml`, 'text/yaml', current().run.config_yaml),
               {id: 'yaml'}),
           button(
-              'Report', async () => current() && download('report.html', 'text/html', await reportOf({
-                                               format: 2,
-                                               version,
-                                               kind: 'run',
-                                               text: '',
-                                               run: {
-                                                 folder: 'the live board',
-                                                 command: commandOf(current().board, view, frames[view]),
-                                                 ...current().run,
-                                                 knobs: current().run.knobs
-                                               }
-                                             })),
+              'Report',
+              async () => current() && download('report.html', 'text/html', await reportOf({
+                                                  format: 2,
+                                                  version,
+                                                  kind: 'run',
+                                                  text: '',
+                                                  run: {
+                                                    folder: 'the live board',
+                                                    command: commandOf(current().board, view, frames[view]),
+                                                    ...current().run,
+                                                    knobs: current().run.knobs
+                                                  }
+                                                })),
               {id: 'report'}),
           saveAs, button('Save in the folder', save, {id: 'save'}), saved),
       command);
@@ -350,7 +288,10 @@ export function showLive(page, {live, database, version}) {
     for (const cell of figures.children) {
       const answer = runs[cell.dataset.source];
       cell.classList.toggle('stale', !isOf(answer, shown));
-      cell.querySelector('.state').textContent = isOf(answer, shown) ? '' : ' …';
+      // While a buffer is held, the computer is not asked.
+      const isAsked = shown === history.board || cell.dataset.source === 'preloaded';
+      cell.querySelector('.state').textContent =
+          isOf(answer, shown) ? '' : isAsked ? ' …' : ', before the move';
     }
     chart.element.classList.toggle('stale', isChartDue || chartOf !== runs[view] || !isOf(chartOf, shown));
     cards.classList.toggle('stale', drawn !== `${view} ${addressOf(history.board)}`);
@@ -365,21 +306,7 @@ export function showLive(page, {live, database, version}) {
     isChartDue = true;
   }
   function drawFigures() {
-    figures.replaceChildren(...kFigures.map(([title, source, numberOf, textOf, noteOf]) => {
-      const [now, then] =
-          [runs[source], pinned?.runs[source]].map(answer => answer && withFoldedLanes(answer.run));
-      const number = now && numberOf(now);
-      const difference = now && then && number - numberOf(then);
-      return h(
-          'div', {'data-source': source, 'data-figure': title},
-          h('dt', null, title, h('span', {class: 'state'})),
-          h('dd', {'data-value': number ?? ''}, now ? textOf(number, now) : '…'),
-          then && now &&
-              h('dd', {class: 'difference'},
-                `A: ${textOf(numberOf(then), then)}, ${
-                    Math.abs(difference) < 1e-9 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
-          h('dd', {class: 'note'}, now ? noteOf(now) : ''));
-    }));
+    figures.replaceChildren(...figureCells(runs, pinned?.runs));
     markWaiting();
   }
   function drawChart() {
