@@ -1,14 +1,13 @@
 """run --fidelity, --timing-only and --verify: the same figures and pictures however they are made."""
 
 import os
-import pathlib
 import re
 import signal
 
 import program
 from pictures import avi, noise
 from program import CAMERA_RATES, CYCLE, HEIGHT, PRELOADED, PROGRESS, SMALL, WIDTH
-from program import ProgramTest, Terminal, run, sets, wait_until
+from program import ProgramTest, Terminal, descendants, of_process, run, sets, wait_until
 
 # Some seconds a frame, cycle by cycle.
 SLOW = ["--timing-only", *sets("image.width=2048", "image.height=2048", "matcher.window=31",
@@ -98,9 +97,8 @@ class SecondRun(ProgramTest):
         return terminal, self.child_of(terminal)
 
     def child_of(self, terminal):
-        with open(f"/proc/{terminal.process.pid}/task/{terminal.process.pid}/children") as children:
-            (child,) = (int(number) for number in children.read().split()
-                        if pathlib.Path(f"/proc/{number}/comm").read_text() == "stereotlm\n")
+        (child,) = (pid for pid in descendants(terminal.process.pid)
+                    if of_process(pid, "comm") == "stereotlm\n")
         return child
 
     def ends(self, child):

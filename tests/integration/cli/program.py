@@ -77,6 +77,29 @@ def wait_until(is_so, seconds=60):
         time.sleep(0.01)
 
 
+def of_process(pid, name):
+    """The text of a file of /proc/PID; None of a process that has ended."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/{name}").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return None
+
+
+def stat(pid):
+    """The fields of /proc/PID/stat behind the name; None of a process that has ended."""
+    fields = (of_process(pid, "stat") or "Z").rpartition(")")[2].split()
+    return None if fields[0] in "ZX" else fields
+
+
+def descendants(pid):
+    parents = {int(each): int(fields[1]) for each in os.listdir("/proc")
+               if each.isdigit() and (fields := stat(each))}
+    found = [pid]
+    for each in found:
+        found += [child for child, parent in parents.items() if parent == each]
+    return found[1:]
+
+
 def of_plain_user():
     """For preexec_fn: permissions of files bind the process, also where root runs the tests."""
     drop_from_bounding_set, override, search = 24, 1, 2

@@ -509,9 +509,6 @@ class Workers(PythonTest):
         self.worker = stereotlm.Worker()
         self.addCleanup(self.worker.close)
 
-    def children(self, pid):
-        return [int(child) for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
     def while_it_works(self, action):
         """Calls action(pid of the worker) while a command is executed; what the command has raised."""
         raised = []
@@ -525,8 +522,8 @@ class Workers(PythonTest):
 
         thread = threading.Thread(target=work)
         thread.start()
-        busy = lambda child: int(pathlib.Path(f"/proc/{child}/stat").read_text().split()[13]) > 20  # 0.2 s
-        program.wait_until(lambda: self.worker.pid and any(map(busy, self.children(self.worker.pid))))
+        busy = lambda pid: int((program.stat(pid) or [0] * 12)[11]) > 20  # 0.2 s
+        program.wait_until(lambda: self.worker.pid and any(map(busy, program.descendants(self.worker.pid))))
         action(self.worker.pid)
         thread.join()
         return raised[0]
@@ -547,7 +544,7 @@ class Workers(PythonTest):
     def test_a_command_that_is_killed_is_an_exception_and_the_worker_works_on(self):
         self.works()
         pid = self.worker.pid
-        error = self.while_it_works(lambda pid: os.kill(self.children(pid)[0], signal.SIGKILL))
+        error = self.while_it_works(lambda pid: os.kill(program.descendants(pid)[0], signal.SIGKILL))
         self.assertIsInstance(error, stereotlm.Failed)
         self.assertIn("signal 9 (Killed)", str(error))
         self.works()

@@ -21,7 +21,7 @@ import urllib.request
 
 import program
 from pictures import PYTHON, pgm
-from program import HEIGHT, PROGRAM, WIDTH, ProgramTest, run, slow, wait_until
+from program import HEIGHT, PROGRAM, WIDTH, ProgramTest, descendants, of_process, run, slow, stat, wait_until
 from report_data import data_of
 
 MODULES = pathlib.Path(__file__).resolve().parents[3] / "sw" / "python"
@@ -38,24 +38,6 @@ LONG = {"board": "fpl2003", "source": "camera", "frames": 99996}  # explain work
 LONG_RUN = {"board": "fpl2003", "frames": 100000, "pictures": {"synthetic": 1}}
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{name}: &{name} [{', '.join(['*' + chr(ord(name) - 1)] * 9)}]\n" for name in "bcdefghijklmnop")
-
-
-def stat(pid):
-    """The fields of /proc/PID/stat behind the name; none for a process that has ended."""
-    try:
-        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    except (FileNotFoundError, ProcessLookupError):
-        return None
-    return None if fields[0] in "ZX" else fields
-
-
-def descendants(pid):
-    parents = {int(each): int(fields[1]) for each in os.listdir("/proc")
-               if each.isdigit() and (fields := stat(each))}
-    found = [pid]
-    for each in found:
-        found += [child for child, parent in parents.items() if parent == each]
-    return found[1:]
 
 
 class Server:
@@ -360,8 +342,8 @@ class Figures(ServeTest):
 class Lifetimes(ServeTest):
     def workers(self, server):
         return [pid for pid in descendants(server.process.pid)
-                if pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().endswith(b"\0worker\0")
-                and int(stat(pid)[1]) == server.process.pid]
+                if (of_process(pid, "cmdline") or "").endswith("\0worker\0")
+                and int((stat(pid) or [0, 0])[1]) == server.process.pid]
 
     def working(self, server):
         """Workers whose commands have computed for 0.2 s."""
