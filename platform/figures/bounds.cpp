@@ -430,7 +430,8 @@ FrameAccesses frame_accesses(const BoardConfig& board, const fpga::AccessPattern
 }
 
 std::vector<BankStatistics> accesses_of_banks(const BoardConfig& board, const FrameAccesses& accesses,
-                                              std::uint64_t frames) {
+                                              std::uint64_t frames, bool with_host) {
+  if (with_host) return all_accesses(board, accesses, true, frames).statistics();
   const fpga::CoreConfig core = core_config(board);
   const fpga::BufferBases buffers = buffer_bases(board);
   BankAccesses all(board);

@@ -41,9 +41,10 @@ inline FrameAccesses frame_accesses(const BoardConfig& board, const Tables& tabl
 // The same for identity tables, which it does not read: it takes some microseconds.
 FrameAccesses identity_accesses(const BoardConfig& board);
 
-// The reads and writes that the core makes in each bank in frames 0..frames-1. The other members are 0.
+// The reads and writes that the core makes in each bank in frames 0..frames-1. `with_host`: and those of the
+// host, which writes the pictures and reads the results. The other members are 0.
 std::vector<BankStatistics> accesses_of_banks(const BoardConfig& board, const FrameAccesses& accesses,
-                                              std::uint64_t frames);
+                                              std::uint64_t frames, bool with_host = false);
 
 // A lower bound for the length of a frame: the cycles that one resource of the core needs for it, pipeline
 // latency included.

@@ -55,7 +55,7 @@ std::string head_text(const BoardConfig& board, const platform::Tables& tables,
   return paragraph(
              fmt::format("{}, {}: ", board.name, camera ? "the whole computer" : "the core alone"), 2,
              fmt::format("{:.3f}{} frames/s{}, limited by {}", now.frames_per_second,
-                         camera ? fmt::format(" ± {:.3f}", now.uncertainty) : "",
+                         now.uncertainty > 0 ? fmt::format(" ± {:.3f}", now.uncertainty) : "",
                          now.loses_pixels() ? " with pixels lost" : "", runs::limiter_text(explanation))) +
          paragraph("the time of a frame: ", 2, runs::budget_text(explanation)) +
          fmt::format("{} bound {:.3f} frames/s{}: {}; {} frames simulated\n", camera ? "steady" : "core",
@@ -148,13 +148,14 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
 // keys: by the key, or by its new value if other values of the key have a line.
 std::string changes_text(const BoardConfig& board, const Explanation& explanation) {
   std::string text = fmt::format(
-      "one change at a time: {} boards simulated; *: the disparities change too{}\n"
+      "one change at a time: {} boards simulated{}; *: the disparities change too{}\n"
       "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n"
       "now {:.3f} mJ a frame; mJ %: the change of that, of {}\n"
       "  {:>8} {:>8} {:>8} {:>7} {:>6} {:>4}  change: from -> to\n",
-      explanation.simulated(), explanation.camera() ? "; ~: within the uncertainty" : "",
-      explanation.now().memory_mj, platform::kEnergyIsOf, "frames/s", "gained", "%", "mJ %", "FPGA %",
-      "RAMs");
+      explanation.simulated(),
+      explanation.left_out() > 0 ? fmt::format(", {} others proven no better", explanation.left_out()) : "",
+      explanation.camera() ? "; ~: within the uncertainty" : "", explanation.now().memory_mj,
+      platform::kEnergyIsOf, "frames/s", "gained", "%", "mJ %", "FPGA %", "RAMs");
   const std::string interruption = explanation.interruption();
   const auto& steps = explanation.steps();
   if (!interruption.empty()) {

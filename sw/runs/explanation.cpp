@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -16,8 +19,11 @@
 #include "models/capture/camera_timing.h"
 #include "models/fpga/core_ports.h"
 #include "models/fpga/frame_geometry.h"
+#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_area.h"
+#include "platform/config/buffer_layout.h"
 #include "platform/figures/derived_figures.h"
+#include "platform/figures/proven_rate.h"
 #include "sw/explore/optimise/workers.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
@@ -313,19 +319,17 @@ std::string message_of(const Json& document) {
   return {bytes.begin(), bytes.end()};
 }
 
-std::string message_of(const explore::Figures& figures) {
+Json json_of(const explore::Figures& figures) {
   Json values = Json::array();
   for (const platform::BoardValue& value : figures.values)
     std::visit([&](const auto& its) { values.push_back({value.path, its}); }, value.value);
   Json blame = Json::array();
   for (const platform::BlameRow& row : figures.blame)
     blame.push_back({row.port, row.bank, row.by, row.cycles});
-  return message_of(Json{{"values", std::move(values)}, {"blame", std::move(blame)}});
+  return {{"values", std::move(values)}, {"blame", std::move(blame)}};
 }
 
-std::string message_of(const std::string& failure) { return message_of(Json{{"failure", failure}}); }
-
-explore::Figures figures_of_message(const Json& document) {
+explore::Figures figures_of(const Json& document) {
   explore::Figures figures;
   for (const Json& pair : document["values"]) {
     const Json& value = pair[1];
@@ -374,6 +378,7 @@ Explanation::Explanation(const platform::BoardConfig& board, const platform::Tab
           board, camera,
           tables.left && tables.right ? platform::joint_tables_problem(tables) : std::nullopt)),
       outcomes_(1 + knobs_.possible.size()),
+      proven_(outcomes_.size()),
       accesses_(platform::frame_accesses(board, tables)) {
   const std::uint64_t turn = platform::allocation_period_frames(board);
   for (std::uint64_t frame = 0; frame < turn; ++frame)
@@ -384,37 +389,131 @@ const platform::BoardConfig& Explanation::board_of(std::size_t number) const {
   return number == 0 ? board_ : knobs_.possible.at(number - 1).board;
 }
 
-bool Explanation::simulate(PointSimulator simulator) {
-  ProgressLine progress(
-      fmt::format("{} boards are simulated, each for {} frames", outcomes_.size(), frames()),
-      stepped_text(board_, tables_, run_.camera));
-  const auto work = [&](std::size_t number) {
-    try {
-      const bool with_core_waits = run_.camera && number == 0;
-      return message_of(simulator(explore::make_point(number, board_of(number), run_), {}, with_core_waits));
-    } catch (const std::exception& error) {
-      return message_of(fmt::format("{}: {}", board_of(number).name, error.what()));
-    }
-  };
+// Does this for each of these boards, in all processes. A board for which it throws has a failure.
+template <typename Work, typename Take>
+void Explanation::for_each(const std::vector<std::size_t>& numbers, const char* done_to_them,
+                           ProgressLine& progress, const Work& work, const Take& take) const {
+  const auto before = static_cast<std::size_t>(
+      std::count_if(outcomes_.begin(), outcomes_.end(), [](const auto& its) { return its.has_value(); }));
   std::size_t done = 0;
-  const auto take = [&](std::size_t number, const std::string& message) {
-    const Json document = Json::from_cbor(message);
-    ++done;
-    if (document.contains("failure")) {
-      outcomes_[number] = {{}, document["failure"]};
+  explore::do_in_processes(
+      numbers.size(), std::max(1U, std::thread::hardware_concurrency()),
+      [&](std::size_t place) {
+        const platform::BoardConfig& board = board_of(numbers[place]);
+        try {
+          return message_of(work(numbers[place], board));
+        } catch (const std::exception& error) {
+          return message_of(Json{{"failure", fmt::format("{}: {}", board.name, error.what())}});
+        }
+      },
+      [&](std::size_t place, const std::string& message) {
+        ++done;
+        take(numbers[place], Json::from_cbor(message));
+      },
+      [&] {
+        const std::size_t of = before + numbers.size();
+        progress.show(before + done, of, [&](double seconds) {
+          return progress_text(before + done, of, fmt::format("boards {}", done_to_them), seconds);
+        });
+        return !process::interrupted();
+      });
+}
+
+// What is proven of each computer. A core that is simulated cycle by cycle takes too long to ask.
+void Explanation::prove(ProgressLine& progress) {
+  std::vector<std::size_t> all(outcomes_.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto work = [this](std::size_t, const platform::BoardConfig& board) {
+    const fpga::AccessPatterns patterns = platform::access_patterns(board, &tables_);
+    const platform::FrameAccesses accesses = platform::frame_accesses(board, patterns);
+    const std::uint64_t turn = platform::allocation_period_frames(board);
+    double work_pj = 0;
+    const auto of_banks = platform::accesses_of_banks(board, accesses, turn, true);
+    for (std::size_t bank = 0; bank < of_banks.size(); ++bank)
+      work_pj += platform::energy_of(board.banks[bank]).access_pj *
+                 static_cast<double>(of_banks[bank].reads + of_banks[bank].writes) /
+                 static_cast<double>(turn);
+    Json proven = {{"work_pj", work_pj}};
+    if (!stepped_text(board, tables_, false).empty()) return proven;
+    const auto rate =
+        platform::proven_rate(board, accesses, platform::core_frame_cycles(board, patterns, turn),
+                              platform::steady_bound(board, accesses));
+    proven["rate"] = {rate->least, rate->most};
+    return proven;
+  };
+  for_each(all, "examined", progress, work, [this](std::size_t number, const Json& its) {
+    if (its.contains("failure")) return;  // that of its simulation is shown
+    proven_[number].work_pj = its["work_pj"];
+    if (its.contains("rate")) proven_[number].rate = {its["rate"][0], its["rate"][1]};
+  });
+}
+
+void Explanation::simulate(const std::vector<std::size_t>& numbers, PointSimulator& simulator,
+                           ProgressLine& progress) {
+  // A rate that is proven needs no measurement. A turn of the lists shows whether pixels are lost.
+  const auto is_short = [this](std::size_t number) {
+    return run_.camera && number != 0 && proven_[number].rate.is_exact();
+  };
+  const auto work = [&](std::size_t number, const platform::BoardConfig& board) {
+    explore::PointRun run = run_;
+    if (is_short(number)) run.frames = kTurns;
+    return json_of(simulator(explore::make_point(number, board, run), run_.camera && number == 0));
+  };
+  for_each(numbers, "simulated", progress, work, [&](std::size_t number, const Json& its) {
+    if (its.contains("failure")) {
+      outcomes_[number] = {{}, its["failure"]};
       return;
     }
-    const explore::Figures figures = figures_of_message(document);
-    outcomes_[number] = {NamedFigures(figures), ""};
+    const explore::Figures figures = figures_of(its);
+    const NamedFigures named(figures);
+    if (is_short(number) && named.integer("lost_pixels") > 0) {
+      proven_[number].rate = {};  // nothing is proven without whole pictures: it gets a long run
+      return;
+    }
+    outcomes_[number] = {named, ""};
     if (number == 0) blames_ = figures.blame;
+  });
+}
+
+// The boards that are to be simulated next: the board, its steps and the surest one of each group. Then those
+// that may be better than that one, or all if it loses pixels: what is proven of a rate is of whole pictures.
+std::vector<std::size_t> Explanation::next_boards() const {
+  struct Group {
+    std::size_t surest = 0;
+    bool is_begun = false;
+    double best = -std::numeric_limits<double>::infinity();  // of those that lose no pixels
   };
-  explore::do_in_processes(outcomes_.size(), std::max(1U, std::thread::hardware_concurrency()), work, take,
-                           [&] {
-                             progress.show(done, outcomes_.size(), [&](double seconds) {
-                               return progress_text(done, outcomes_.size(), "boards simulated", seconds);
-                             });
-                             return !process::interrupted();
-                           });
+  std::map<std::string, Group> groups;
+  const auto group_of = [this](std::size_t number) {
+    return number == 0 ? std::string() : knobs_.possible[number - 1].group;
+  };
+  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
+    Group& group = groups.emplace(group_of(number), Group{number}).first->second;
+    if (proven_[number].rate.least > proven_[group.surest].rate.least) group.surest = number;
+    if (!outcomes_[number]) continue;
+    group.is_begun = true;
+    const Rate rate = rate_of(number);
+    if (rate.is_whole()) group.best = std::max(group.best, rate.frames_per_second + rate.uncertainty);
+  }
+  std::vector<std::size_t> numbers;
+  for (std::size_t number = 0; number < outcomes_.size(); ++number) {
+    const std::string name = group_of(number);
+    const Group& group = groups[name];
+    const double most = proven_[number].rate.most;
+    const bool may_be_best = group.is_begun ? most > group.best : number == group.surest || std::isinf(most);
+    if (!outcomes_[number] && (name.empty() || may_be_best)) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+bool Explanation::simulate(PointSimulator simulator) {
+  ProgressLine progress(
+      fmt::format("at most {} boards are simulated, for at most {} frames each", outcomes_.size(), frames()),
+      stepped_text(board_, tables_, run_.camera));
+  if (run_.camera) prove(progress);
+  if (process::interrupted()) return false;
+  for (auto numbers = next_boards(); !numbers.empty() && !process::interrupted(); numbers = next_boards())
+    simulate(numbers, simulator, progress);
   if (!outcomes_[0]) return false;
   now_ = rate_of(0);
   if (!now_.failure.empty()) throw std::runtime_error(now_.failure);
@@ -432,18 +531,40 @@ bool Explanation::simulate(PointSimulator simulator) {
 }
 
 std::string Explanation::interruption() const {
-  if (simulated_ == knobs_.possible.size()) return "";
-  return fmt::format("{} of {} changes were simulated", simulated_, knobs_.possible.size());
+  const std::size_t missing = next_boards().size();
+  if (missing == 0) return "";
+  return fmt::format("{} of {} changes were simulated", simulated_, simulated_ + missing);
 }
 
 Explanation::Rate Explanation::rate_of(std::size_t number) const {
   const Outcome& outcome = outcomes_.at(number).value();
   if (!outcome.failure.empty()) return {0, 0, 0, 0, outcome.failure};
   const NamedFigures& its = outcome.figures;
-  const double energy = its.real("energy.memory_mj_per_frame");
-  if (!run_.camera) return {its.real("frames_per_second.core"), 0, 0, energy, ""};
-  return {its.real("frames_per_second.steady"), its.real("frames_per_second.steady_uncertainty"),
-          its.integer("lost_pixels"), energy, ""};
+  if (!run_.camera)
+    return {its.real("frames_per_second.core"), 0, 0, its.real("energy.memory_mj_per_frame"), ""};
+  Rate rate = {its.real("frames_per_second.steady"), its.real("frames_per_second.steady_uncertainty"),
+               its.integer("lost_pixels"), 0, ""};
+  const Proven& proven = proven_[number];
+  if (!rate.loses_pixels()) {
+    const explore::Range range = explore::narrowed(proven.rate, rate.frames_per_second, rate.uncertainty);
+    rate.frames_per_second = std::clamp(rate.frames_per_second, range.least, range.most);
+    rate.uncertainty = std::max(rate.frames_per_second - range.least, range.most - rate.frames_per_second);
+  }
+  // The energy of a frame in the long run, too, with whole pictures: a run also counts its start.
+  double pj = proven.work_pj;
+  const std::vector<bool> used = platform::used_banks(board_of(number));
+  for (std::size_t index = 0; index < used.size(); ++index) {
+    if (!used[index]) continue;
+    const platform::BankConfig& bank = board_of(number).banks[index];
+    const memory::BankEnergy of_bank = platform::energy_of(bank);
+    const std::string path = "banks." + bank.name + ".energy.";
+    pj += of_bank.standby_mw * 1e9 / rate.frames_per_second +
+          static_cast<double>(of_bank.row_pj * its.integer(path + "rows_opened") +
+                              of_bank.refresh_pj * its.integer(path + "refreshes")) /
+              static_cast<double>(its.integer("frames"));
+  }
+  rate.memory_mj = pj / 1e9;
+  return rate;
 }
 
 Explanation::BusiestBank Explanation::busiest_bank_of(std::size_t number) const {

@@ -10,11 +10,14 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/figures/bounds.h"
+#include "sw/explore/optimise/figure_range.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/explore/store/store.h"
 #include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::runs {
+
+class ProgressLine;
 
 // What the time of a frame goes to, in percent of it. The shares sum to 100.
 struct Budget {
@@ -43,12 +46,13 @@ class NamedFigures {
 // what each step gains or costs.
 class Explanation {
  public:
-  // The default numbers of frames of each board: a multiple of every possible turn of the lists (1, 2, 3 or
-  // 6). 6 of the 42 are for the warm-up of the whole computer.
-  static constexpr std::uint64_t kCoreFrames = 6;
-  static constexpr std::uint64_t kComputerFrames = 42;
+  // A multiple of every possible turn of the lists (1, 2, 3 or 6).
+  static constexpr std::uint64_t kTurns = 6;
+  // The default numbers of frames of each board. 6 of the 42 are for the warm-up of the whole computer.
+  static constexpr std::uint64_t kCoreFrames = kTurns;
+  static constexpr std::uint64_t kComputerFrames = 7 * kTurns;
   // The fewest frames of the whole computer with which every board has a steady rate.
-  static constexpr std::uint64_t kLeastComputerFrames = 12;
+  static constexpr std::uint64_t kLeastComputerFrames = 2 * kTurns;
 
   // `camera`: the whole computer, else the core alone. `frames`: 0 for the default. `board` and `tables`
   // outlive the object.
@@ -62,12 +66,14 @@ class Explanation {
 
   // The result of the simulation of one board.
   struct Rate {
-    double frames_per_second = 0;  // of the core; of the whole computer the steady rate
-    double uncertainty = 0;        // of the steady rate
+    // Of the core. Of the whole computer in the long run: the steady rate, narrowed by what is proven.
+    double frames_per_second = 0;
+    double uncertainty = 0;        // 0 if the rate is proven
     std::int64_t lost_pixels = 0;  // by captures
-    double memory_mj = 0;          // energy of the memories for each frame
+    double memory_mj = 0;          // energy of the memories for each frame, in the long run, of whole pictures
     std::string failure;           // the reason if the run has failed; else empty
     bool loses_pixels() const { return lost_pixels > 0; }
+    bool is_whole() const { return failure.empty() && !loses_pixels(); }
   };
   const platform::BoardConfig& board() const { return board_; }
   const Rate& now() const { return now_; }  // of the board itself
@@ -88,9 +94,12 @@ class Explanation {
     BusiestBank busiest;  // without meaning if the run has failed
   };
   // All steps that were simulated, the best first: by their rate, those that lose pixels after the others,
-  // those that have failed last. Of a group only the best.
+  // those that have failed last. Of a group only the best. A step that is proven to be no better than another
+  // one of its group is not simulated.
   const std::vector<Step>& steps() const { return steps_; }
   std::size_t simulated() const { return simulated_; }  // how many of knobs().possible
+  // How many were left out, because others of their groups are proven to be as good, within the uncertainty.
+  std::size_t left_out() const { return knobs_.possible.size() - simulated_ - next_boards().size(); }
   // "12 of 47 changes were simulated"; empty without an interrupt.
   std::string interruption() const;
   const BusiestBank& busiest_bank() const { return busiest_; }
@@ -139,6 +148,17 @@ class Explanation {
   const std::vector<platform::BlameRow>& group_blames() const { return group_blames_; }
 
  private:
+  // What is known of a whole computer without its simulation.
+  struct Proven {
+    explore::Range rate;  // in the long run
+    double work_pj = 0;   // of the accesses of a frame
+  };
+  template <typename Work, typename Take>
+  void for_each(const std::vector<std::size_t>& numbers, const char* done_to_them, ProgressLine& progress,
+                const Work& work, const Take& take) const;
+  void prove(ProgressLine& progress);
+  void simulate(const std::vector<std::size_t>& numbers, PointSimulator& simulator, ProgressLine& progress);
+  std::vector<std::size_t> next_boards() const;
   const platform::BoardConfig& board_of(std::size_t number) const;
   Rate rate_of(std::size_t number) const;
   BusiestBank busiest_bank_of(std::size_t number) const;
@@ -158,6 +178,7 @@ class Explanation {
     std::string failure;  // the reason if it has failed; else empty
   };
   std::vector<std::optional<Outcome>> outcomes_;  // of the board itself, then of the steps
+  std::vector<Proven> proven_;                    // as many
   platform::FrameAccesses accesses_;
   std::vector<std::vector<platform::ResourceBound>> bounds_;  // [frame of one turn of the lists]
   NamedFigures figures_;

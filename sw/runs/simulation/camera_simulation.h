@@ -38,10 +38,6 @@ class CameraSimulation : public Simulation {
   platform::TimelineRecords take_timeline() override;
   platform::Statistics statistics() const override;
   platform::ComputerView& computer() { return *computer_; }
-  // The steady rate of the frames delivered so far; nullopt if they are too few.
-  std::optional<platform::SteadyRate> steady_rate() const {
-    return platform::steady_rate(deliveries_, platform::allocation_period_frames(board()));
-  }
 
  private:
   // The scene in front of one camera.

@@ -67,10 +67,9 @@ Json in_child(const std::function<Json()>& work) {
 }
 
 // Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never
-// destroyed. Returns null if the simulation was given up.
+// destroyed.
 Json simulate_computer(const explore::Point& point, const platform::Tables& tables,
-                       const std::optional<stats::Accuracy>& accuracy,
-                       const PointSimulator::Hopeless& hopeless, bool with_core_waits) {
+                       const std::optional<stats::Accuracy>& accuracy, bool with_core_waits) {
   const platform::BoardConfig& board = *point.board;
   const std::uint64_t frames = point.run.frames;
   auto* const binder = new Binder;
@@ -93,9 +92,6 @@ Json simulate_computer(const explore::Point& point, const platform::Tables& tabl
   while (!simulation->finished()) {
     simulation->advance();
     take();
-    if (!hopeless) continue;
-    const std::optional<platform::SteadyRate> so_far = simulation->steady_rate();
-    if (so_far && hopeless(*so_far)) return nullptr;
   }
   Json document = document_of(simulation->statistics(), board, accuracy);
   take();
@@ -105,8 +101,7 @@ Json simulate_computer(const explore::Point& point, const platform::Tables& tabl
 
 }  // namespace
 
-explore::Figures PointSimulator::operator()(const explore::Point& point, const Hopeless& hopeless,
-                                            bool with_core_waits) {
+explore::Figures PointSimulator::operator()(const explore::Point& point, bool with_core_waits) {
   const platform::BoardConfig& board = *point.board;
   const bool is_usable = is_table_of(tables_.left, board, board.allocation.left_lut.has_value()) &&
                          is_table_of(tables_.right, board, board.allocation.right_lut.has_value());
@@ -119,7 +114,7 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, const H
         document_of(platform::run_core(board, tables_, point.run.frames), board, accuracy));
   }
   const Json document =
-      in_child([&] { return simulate_computer(point, tables_, accuracy, hopeless, with_core_waits); });
+      in_child([&] { return simulate_computer(point, tables_, accuracy, with_core_waits); });
   if (document.is_null()) throw explore::GivenUp();
   return explore::figures_of(document);
 }

@@ -26,15 +26,10 @@ class PointSimulator {
   // From now on each point also has the accuracy of its disparities.
   void judge(PointQuality quality) { quality_ = std::move(quality); }
 
-  // Called repeatedly while a whole computer is simulated, with its steady rate so far. Returns true to give
-  // up the simulation.
-  using Hopeless = std::function<bool(const platform::SteadyRate& so_far)>;
-
-  // Simulates a point. Throws std::runtime_error if that fails, and explore::GivenUp if it was given up.
+  // Simulates a point. Throws std::runtime_error if that fails, and explore::GivenUp after an interrupt.
   // `with_core_waits`: for a whole computer with a steady rate, adds the shares of the time in its window in
   // which the core waits for its next start: figures `core_waits.REASON` (sw/report/README.md, Time line).
-  explore::Figures operator()(const explore::Point& point, const Hopeless& hopeless = {},
-                              bool with_core_waits = false);
+  explore::Figures operator()(const explore::Point& point, bool with_core_waits = false);
 
  private:
   // The given tables; if there are none, the identity tables of the last point, because the next point mostly

@@ -6,15 +6,23 @@ import program
 from program import CAMERA_RATES, PRELOADED, SMALL, ProgramTest, run, sets
 
 CLOCK_HZ = 5992 / 1600 * 1e6  # of CAMERA_RATES
+# Frames take so long beside all else that 2 in 3 camera frames are proven.
+PROVEN = sets("image.width=128", "image.height=96", "cameras.frame_rate_hz=30", "fpga.clock_mhz=1.8")
 ONE_BANK = sets("allocation.left_image=[bank0, bank0]")
+
+
+def changed(options, values):
+    """Options --set with these values in place of others of the same keys."""
+    keys = [value.partition("=")[0] for value in values]
+    return sets(*(each for each in options if each != "--set" and each.partition("=")[0] not in keys), *values)
 
 
 class Figures(ProgramTest):
     def document(self, *options):
         return json.loads(self.succeeds(run("explain", "fpl2003", *SMALL, *options, "--json")))
 
-    def ran(self, *options):
-        return json.loads(self.succeeds(run("run", "fpl2003", *SMALL, *options, "--synthetic", 1, "--json")))
+    def ran(self, *options, image=SMALL):
+        return json.loads(self.succeeds(run("run", "fpl2003", *image, *options, "--synthetic", 1, "--json")))
 
     def test_the_time_is_shared_among_the_frames_of_the_steady_rate(self):
         options = [*CAMERA_RATES, *ONE_BANK]
@@ -66,6 +74,55 @@ class Figures(ProgramTest):
             self.assertAlmostEqual(bridge["headroom_percent"], 10, delta=0.7)
             self.assertEqual(bridge["headroom_percent"] < 10, is_named)
             self.assertEqual("; the PCI bridge is busy in" in document["limited_by"], is_named)
+
+    def rates(self, *options, image=SMALL):
+        return self.ran(*options, "--timing-only", image=image)["frames_per_second"]
+
+    def test_rates_are_those_of_the_long_run(self):
+        document = json.loads(self.succeeds(run("explain", "fpl2003", *PROVEN, "--page-data")))
+        long, short = (self.ran("--timing-only", "--frames", frames, image=PROVEN) for frames in (202, 102))
+        energy = [stats["frames"] * stats["energy"]["memory_mj_per_frame"] for stats in (long, short)]
+        self.assertAlmostEqual((energy[0] - energy[1]) / 100 / document["memory_mj_per_frame"], 1, delta=1e-3)
+        exact = 0
+        for change in [document, *document["changes"]]:
+            options = changed(PROVEN, change.get("sets", []))
+            rate, uncertainty = change["frames_per_second"], change["uncertainty_frames_per_second"]
+            found = self.rates("--frames", 42, image=options)
+            for open_rate in found["steady"] - rate, uncertainty:
+                self.assertLessEqual(abs(open_rate), found["steady_uncertainty"] + 1e-9)
+            if "exact" in found:
+                exact += 1
+                found = self.rates("--frames", 202, image=options)
+                self.assertEqual((rate, uncertainty), (found["exact"], 0))
+                self.assertAlmostEqual(found["steady"], rate, delta=found["steady_uncertainty"] + 1e-9)
+        self.assertGreater(exact, 20)
+
+    def test_no_step_that_is_left_out_is_better(self):
+        """All ways to move what one bank holds into another one."""
+        held = {"bank0": "left_image[0]", "bank1": "left_image[1]", "bank2": "right_image[0]",
+                "bank3": "right_image[1]", "bank4": "disparity[0]", "bank5": "disparity[1]",
+                "bank6": "left_lut[0]", "bank7": "right_lut[0]"}
+        changes = json.loads(self.succeeds(run("explain", "fpl2003", *SMALL, *CAMERA_RATES, "--page-data")))
+        (best,) = (each for each in changes["changes"] if each["key"] == "a bank less")
+        for bank, buffer in held.items():
+            name, entry = buffer[:-3], int(buffer[-2])
+            for other in held:
+                places = sorted(own for own, its in held.items() if its[:-3] == name)
+                places[entry] = other
+                value = f"[{', '.join(places)}]" if len(places) > 1 else places[0]
+                found = self.rates(*CAMERA_RATES, *sets(f"allocation.{name}={value}"), "--frames", 42)
+                self.assertLessEqual(found["steady"] - found["steady_uncertainty"],
+                                     best["frames_per_second"] + best["uncertainty_frames_per_second"])
+
+    def test_a_proven_rate_does_not_hide_a_loss_of_pixels(self):
+        few = ["capture.fifo_words=2", "capture.fifo_trigger_words=1", "pci.bridge_wait_clocks=16"]
+        changes = self.document(*CAMERA_RATES, *sets(*few))["changes"]
+        for lossy in "capture.fifo_words=1", "capture.fifo_trigger_words=2":
+            (change,) = (each for each in changes if each["sets"] == [lossy])
+            self.assertTrue(change["loses_pixels"])
+            found = self.rates(*CAMERA_RATES, *changed(sets(*few), [lossy]), "--frames", 42)
+            self.assertEqual(change["frames_per_second"], found["steady"])
+            self.assertAlmostEqual(change["memory_mj_changed_percent"], 0, delta=0.5)
 
 
 if __name__ == "__main__":

@@ -70,11 +70,13 @@ def run(*arguments, **options):
 
 
 def wait_until(is_so, seconds=60):
+    """What `is_so` returns, as soon as that is true."""
     end = time.monotonic() + seconds
-    while not is_so():
+    while not (found := is_so()):
         if time.monotonic() > end:
             raise AssertionError(f"not within {seconds} s")
         time.sleep(0.01)
+    return found
 
 
 def of_process(pid, name):

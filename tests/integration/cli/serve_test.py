@@ -354,8 +354,7 @@ class Lifetimes(ServeTest):
         server = self.serve()
         for path, body in (("/explain", LONG), ("/run", LONG_RUN)):
             with server.begin(path, body):
-                wait_until(lambda: self.working(server))
-                (worker,) = self.working(server)
+                (worker,) = wait_until(lambda: self.working(server))
                 at_work = [worker, *descendants(worker)]
             wait_until(lambda: not any(map(stat, at_work)), 2)
         self.assertEqual(server.post("/check", {"board": "fpl2003"})[0], 200)
@@ -373,11 +372,10 @@ class Lifetimes(ServeTest):
     def test_a_worker_that_is_killed_costs_its_own_request_only(self):
         server = self.serve()
         with server.begin("/explain", LONG) as one, server.begin("/explain", LONG) as other:
-            wait_until(lambda: len(self.working(server)) == 2)
+            killed, stays = wait_until(lambda: len(both := self.working(server)) == 2 and both)
             status, document = server.post("/explain", LONG)
             self.assertEqual((status, document["error"][:22]), (503, "two long questions are"))
             self.assertEqual(server.post("/check", {"board": "fpl2003"})[0], 200)
-            killed, stays = self.working(server)
             os.kill(killed, signal.SIGKILL)
             said = {one: b"", other: b""}
             one.setblocking(False), other.setblocking(False)
@@ -390,12 +388,11 @@ class Lifetimes(ServeTest):
             wait_until(has_ended)
             time.sleep(0.3)
             self.assertTrue(has_ended())
-            self.assertEqual(self.working(server), [stays])
+            wait_until(lambda: self.working(server) == [stays])
         wait_until(lambda: not self.working(server))
         with server.begin("/run", LONG_RUN) as connection:
             for _ in range(2):  # it is tried again once
-                wait_until(lambda: self.working(server))
-                (pid,) = self.working(server)
+                (pid,) = wait_until(lambda: self.working(server))
                 os.kill(pid, signal.SIGKILL)
                 wait_until(lambda: not stat(pid))
             status, _, text = server.answer(connection)
