@@ -9,6 +9,7 @@ const kDrags = 4;           // pixels that the pointer moves before a buffer is 
 const kLeastChange = 0.05;  // MB/s
 const kMostChanges = 6;     // that are named
 const kNewBank = '#new';
+const kHint = 'Drag a buffer into another bank; by keys: go to it with the arrows, Enter, arrows, Enter.';
 
 const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
 const bankOf = element => element?.closest?.('.block[id^="bank-"]')?.id.slice('bank-'.length);
@@ -39,8 +40,6 @@ export function makeChart({place, drop}) {
   const element = h('div', {class: 'live-chart'}, group, target, status, changes);
   const ghost = h('div', {class: 'ghost', hidden: true});
   document.body.append(ghost);
-  const kIdle =
-      'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
   let run = null;
   let held = null;      // {key, label, from, bank, x, y, isDragged, byKeys}
   let kept = null;      // the key of the buffer that had the focus
@@ -65,9 +64,8 @@ export function makeChart({place, drop}) {
     document.body.classList.remove('dragging');
     for (const block of blocks()) block.classList.remove('over');
     target.classList.remove('over');
-    status.textContent = kIdle;
     const moves = isDropped && bank && bank !== from;
-    if (moves) status.textContent = `${label} is in ${nameOf(bank)}.`;
+    status.textContent = moves ? `${label} is in ${nameOf(bank)}.` : '';
     kept = key;
     if (moves)
       drop(key, bank === kNewBank ? newBankName(run.settings) : bank, bank === kNewBank);
@@ -81,6 +79,7 @@ export function makeChart({place, drop}) {
     if (!buffer || event.button !== 0 || !run) return;
     event.preventDefault();
     buffer.focus({preventScroll: true});
+    status.textContent = '';
     const from = bankOf(buffer);
     held = {
       key: buffer.dataset.key,
@@ -98,11 +97,11 @@ export function makeChart({place, drop}) {
     document.body.classList.add('dragging');
     hideTooltip();
     ghost.hidden = false;
-    ghost.textContent = held.label;
     ghost.style.left = `${event.clientX + 10}px`;
     ghost.style.top = `${event.clientY + 8}px`;
     const below = document.elementFromPoint(event.clientX, event.clientY);
     over(below?.closest('#new-bank') ? kNewBank : bankOf(below));
+    ghost.textContent = status.textContent || held.label;
   });
   addEventListener('pointerup', () => held && !held.byKeys && end(held.isDragged));
   addEventListener('pointercancel', () => held && end(false));
@@ -164,7 +163,7 @@ export function makeChart({place, drop}) {
     const before = ratesOf(with_);
     addMemory(
         group, [run],
-        link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
+        link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : [], kHint);
     const svg = group.querySelector('svg.memory-chart');
     const changed = new Set(links.map(([link]) => link));
     for (const link of linksOf(svg)) link.element.classList.toggle('changed', changed.has(link.name));
@@ -178,8 +177,10 @@ export function makeChart({place, drop}) {
         rx: 3,
         class: 'handle'
       }));
-      mark(buffer, [labelOf(buffer), bankText(bankOf(buffer)), 'drag it, or press Enter, to move it']);
-      buffer.setAttribute('role', 'button');
+      const texts = [...buffer.querySelectorAll('text')].map(text => text.textContent);
+      const what = [`${texts.join(' ')} words`, bankText(bankOf(buffer)), 'drag it, or press Enter, to move it'];
+      mark(buffer, what).setAttribute('role', 'button');
+      buffer.closest('.block').setAttribute('role', 'group');
     }
     if (left !== undefined) group.querySelector('.memory').scrollLeft = left;
     group.style.minHeight = '';
@@ -190,8 +191,9 @@ export function makeChart({place, drop}) {
   }
   // Says why the board is refused that the held buffer would give.
   function refuse(why) {
-    if (held) status.textContent = `${held.label}: not into ${nameOf(held.bank)}: ${why}`;
+    if (held) {
+      status.textContent = ghost.textContent = `${held.label}: not into ${nameOf(held.bank)}: ${why}`;
+    }
   }
-  status.textContent = kIdle;
   return {show, refuse, element};
 }

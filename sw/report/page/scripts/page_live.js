@@ -39,8 +39,8 @@ export function showLive(page, {live, database, version}) {
   addHead(page, {kind: 'live board', name: '', headline: ''});
   const [name, headline] = [page.querySelector('.top b'), page.querySelector('h1')];
   const figures = h('dl', {class: 'answers', id: 'figures'});
-  const message = h('p', {class: 'bad', id: 'message', role: 'alert'});
-  const keys = makeKeys(live, set);
+  const message = h('p', {class: 'bad', id: 'message', role: 'alert', tabindex: '0'});
+  const keys = makeKeys(live, set, openError);
   const chart = makeChart({
     place: (buffer, bank, isNew) => showBoard(buffer ? moved(buffer, bank, isNew) : history.board),
     drop: (buffer, bank, isNew) => history.show(moved(buffer, bank, isNew))
@@ -153,7 +153,8 @@ export function showLive(page, {live, database, version}) {
         }
       },
         buttons);
-  page.append(tools, exports, message, figures, list, ...panels);
+  const unfold = h('details', {class: 'more'}, h('summary', null, 'What these figures mean'));
+  page.append(tools, exports, message, unfold, figures, list, ...panels);
   open(database && !boardOf(location.hash) ? tabs.length - 1 : 0);
   boards.append(
       h('option', {value: ''}, 'choose'),
@@ -179,6 +180,7 @@ export function showLive(page, {live, database, version}) {
   // Changes of the board.
   function set(changes) {
     history.show(withSets(history.board, changes));
+    return history.board;
   }
   function moved(buffer, bank, isNew) {
     const {settings} = (runs.preloaded ?? runs.camera).run;
@@ -239,7 +241,7 @@ export function showLive(page, {live, database, version}) {
     // A text above the chart would move the banks away from the pointer.
     if (!isOf({board: its}, history.board)) return chart.refuse(error.message);
     if (!(error instanceof Refused)) return openError(error);
-    keys.refuse(error.problems);
+    keys.refuse(error.problems, its);
     message.textContent = `This board is refused: ${error.message}`;
   }
   const more = source => ({source, frames: frames[source]});
@@ -275,7 +277,7 @@ export function showLive(page, {live, database, version}) {
     previous = settled;
     question?.abort();
     message.textContent = '';
-    keys.refuse([]);
+    keys.refuse([], history.board);
     showBoard(history.board);
     undo.disabled = !history.canUndo;
     redo.disabled = !history.canRedo;
@@ -348,7 +350,7 @@ export function showLive(page, {live, database, version}) {
     requestAnimationFrame(() => requestAnimationFrame(() => {
                             cards.style.minHeight = '';
                           }));
-    drawGains(has ? gains.knobs : null);
+    if (!question) drawGains();
     markWaiting();
   }
   function pinOrNot() {
@@ -380,13 +382,15 @@ export function showLive(page, {live, database, version}) {
       drawn = '';
       askWhenQuiet();
     } catch (error) {
-      gainsHost.replaceChildren();
       if (error.name !== 'AbortError') openError(error);
     }
+    if (controller === question) question = null;
+    if (!question) drawGains();
   }
-  function drawGains(knobs) {
+  function drawGains() {
     gainsHost.replaceChildren();
-    if (!knobs) return;
+    if (gains?.address !== addressOf(history.board)) return;
+    const {knobs, source} = gains;
     const kMost = 8;
     const best = knobs.changes.filter(({gained_percent: gained}) => gained > 0.05).slice(0, kMost);
     const rows = best.map(
@@ -402,7 +406,8 @@ export function showLive(page, {live, database, version}) {
       wide: true,
       title: best.length ? 'The single changes that gain most' : 'No single change gains frames',
       body: htmlTable(['', 'change', 'frames/s', 'gain', 'slices', ''], rows),
-      note: `Of ${count(knobs.changes.length, 'change')}; all are below, under what to change.`
+      note: `Of ${count(knobs.changes.length, 'change')}, for ${new Map(kViews).get(source)}. While it ` +
+          'is shown, all are below, under what to change.'
     });
     gainsHost.replaceChildren(group);
   }
