@@ -307,7 +307,8 @@ class Change(LiveTest):
         self.browser.settled()
         self.is_as_run()
         filled = self.address()
-        self.browser.click("#undo")
+        mark = "return document.querySelector('#figures .stale .state')?.textContent"  # at once
+        self.assertEqual(self.browser.run(f"document.getElementById('undo').click(); {mark}"), " …")
         self.browser.until("return document.querySelector('#message').textContent")
         last = f"return document.getElementById('key-{bank}.refresh_cycles')?.value"
         self.assertEqual(self.browser.run(last), "")
