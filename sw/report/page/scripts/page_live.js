@@ -242,7 +242,7 @@ export function showLive(page, {live, database, version}) {
     if (!isOf({board: its}, history.board)) return chart.refuse(error.message);
     if (!(error instanceof Refused)) return openError(error);
     keys.refuse(error.problems, its);
-    message.textContent = `This board is refused: ${error.message}`;
+    message.textContent = `This board is refused; Undo takes the change back. ${error.message}`;
   }
   const more = source => ({source, frames: frames[source]});
   const askCore = inTurn(
@@ -271,6 +271,8 @@ export function showLive(page, {live, database, version}) {
     shown = its;
     page.classList.remove('refused');
     askCore(its);
+    // Other texts do not move the banks away from the pointer.
+    figures.style.height = its === history.board ? '' : `${figures.getBoundingClientRect().height}px`;
     markWaiting();
   }
   function changed() {
@@ -293,7 +295,7 @@ export function showLive(page, {live, database, version}) {
       // While a buffer is held, the computer is not asked.
       const isAsked = shown === history.board || cell.dataset.source === 'preloaded';
       cell.querySelector('.state').textContent =
-          isOf(answer, shown) ? '' : isAsked ? ' …' : ', before the move';
+          isOf(answer, shown) ? '' : isAsked ? ' …' : ', before';
     }
     chart.element.classList.toggle('stale', isChartDue || chartOf !== runs[view] || !isOf(chartOf, shown));
     cards.classList.toggle('stale', drawn !== `${view} ${addressOf(history.board)}`);
