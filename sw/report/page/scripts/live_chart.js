@@ -37,7 +37,8 @@ export function makeChart({place, drop}) {
   const target = h('div', {class: 'new-bank', id: 'new-bank'}, 'Drop a buffer here: into a new bank');
   const changes = h('p', {class: 'note', id: 'chart-changes'});
   const group = h('div');
-  const element = h('div', {class: 'live-chart'}, group, target, status, changes);
+  const told = h('div', {class: 'told'}, status, changes);
+  const element = h('div', {class: 'live-chart'}, group, target, told);
   const ghost = h('div', {class: 'ghost', hidden: true});
   document.body.append(ghost);
   let run = null;
@@ -62,6 +63,7 @@ export function makeChart({place, drop}) {
     held = null;
     ghost.hidden = true;
     document.body.classList.remove('dragging');
+    told.classList.remove('held');
     for (const block of blocks()) block.classList.remove('over');
     target.classList.remove('over');
     const moves = isDropped && bank && bank !== from;
@@ -79,7 +81,6 @@ export function makeChart({place, drop}) {
     if (!buffer || event.button !== 0 || !run) return;
     event.preventDefault();
     buffer.focus({preventScroll: true});
-    status.textContent = '';
     const from = bankOf(buffer);
     held = {
       key: buffer.dataset.key,
@@ -95,13 +96,14 @@ export function makeChart({place, drop}) {
     if (!held.isDragged && Math.hypot(event.clientX - held.x, event.clientY - held.y) < kDrags) return;
     held.isDragged = true;
     document.body.classList.add('dragging');
+    told.classList.add('held');
     hideTooltip();
     ghost.hidden = false;
+    ghost.textContent = held.label;
     ghost.style.left = `${event.clientX + 10}px`;
     ghost.style.top = `${event.clientY + 8}px`;
     const below = document.elementFromPoint(event.clientX, event.clientY);
     over(below?.closest('#new-bank') ? kNewBank : bankOf(below));
-    ghost.textContent = status.textContent || held.label;
   });
   addEventListener('pointerup', () => held && !held.byKeys && end(held.isDragged));
   addEventListener('pointercancel', () => held && end(false));
@@ -121,6 +123,7 @@ export function makeChart({place, drop}) {
       if (held) return end(true);
       const from = bankOf(buffer);
       held = {key: buffer.dataset.key, label: labelOf(buffer), from, bank: from, byKeys: true};
+      told.classList.add('held');
       status.textContent =
           `${held.label} is held: choose a bank with the arrows, then Enter. Escape: leave it.`;
     } else if (held && event.key.startsWith('Arrow')) {
@@ -191,9 +194,7 @@ export function makeChart({place, drop}) {
   }
   // Says why the board is refused that the held buffer would give.
   function refuse(why) {
-    if (held) {
-      status.textContent = ghost.textContent = `${held.label}: not into ${nameOf(held.bank)}: ${why}`;
-    }
+    if (held) status.textContent = `${held.label}: not into ${nameOf(held.bank)}: ${why}`;
   }
   return {show, refuse, element};
 }
