@@ -115,7 +115,8 @@ _RULES = {  # key of a body: what is right, and the same in words
     "truth_scale": _number(1e-6, 1e6, int, float),
     "fit": (lambda value: value in ("crop", "pad"), "crop or pad"),
     "offset": _number(-4096, 4096, int),
-    "vary": (_varies, f"one or two keys, each with values such as 3, [a, b], {{rows: [a, b]}}; at most {POINTS} points"),
+    "vary": (_varies, "one or two keys, each with values such as 3, [a, b], {rows: [a, b]}; "
+             f"at most {POINTS} points"),
     "record": (lambda value: isinstance(value, bool), "true or false"),
     "name": (lambda value: _is_text(value, 200, r"[A-Za-z0-9][A-Za-z0-9_.-]*\.yaml"),
              "letters, digits, _ . and -, with .yaml at the end"),

@@ -180,9 +180,9 @@ export function makeChart({place, drop}) {
         rx: 3,
         class: 'handle'
       }));
-      const texts = [...buffer.querySelectorAll('text')].map(text => text.textContent);
-      const what = [`${texts.join(' ')} words`, bankText(bankOf(buffer)), 'drag it, or press Enter, to move it'];
-      mark(buffer, what).setAttribute('role', 'button');
+      const texts = [...buffer.querySelectorAll('text')].map(text => text.textContent).join(' ');
+      const how = 'drag it, or press Enter, to move it';
+      mark(buffer, [`${texts} words`, bankText(bankOf(buffer)), how]).setAttribute('role', 'button');
       buffer.closest('.block').setAttribute('role', 'group');
     }
     if (left !== undefined) group.querySelector('.memory').scrollLeft = left;

@@ -68,7 +68,9 @@ export function makeKeys({keys, schema}, set, fail) {
             },
             name || path),
           h('span', {class: 'value'}, control, unit && ` ${unit}`),
-          h('p', {class: 'note', id: `about-${path}`}, `${capital(meaning.replace('the bank NAME', path.split('.')[2]))}. ${range}`), problem);
+          h('p', {class: 'note', id: `about-${path}`},
+            `${capital(meaning.replace('the bank NAME', path.split('.')[2]))}. ${range}`),
+          problem);
     rows.set(path, {control, problem, row});
     return row;
   }
