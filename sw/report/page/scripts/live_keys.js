@@ -134,9 +134,13 @@ export function makeKeys({keys, schema}, set, fail) {
     // Shows the keys of a board that is not known yet or refused, with rows for those that it lacks, and each
     // problem beside its key.
     refuse(all, board) {
-      const lacks = all.map(({key}) => key).filter(key => about.has(schemaPath(key ?? '')) && !rows.has(key));
-      const placeOf = path => keys.findIndex(({key}) => key === schemaPath(path));
-      if (lacks.length) build([...new Set([...paths, ...lacks])].sort((a, b) => placeOf(a) - placeOf(b)));
+      const named = [...all, ...board.sets.map(([key]) => ({key}))].map(({key}) => key ?? '');
+      const lacks = named.filter(key => about.has(schemaPath(key)) && !rows.has(key));
+      if (all.length && lacks.length) {
+        const places = new Map(keys.map(({key}, i) => [key, i]));
+        const placeOf = path => places.get(schemaPath(path));
+        build([...new Set([...paths, ...lacks])].sort((a, b) => placeOf(a) - placeOf(b)));
+      }
       fill(board);
       for (const {key, place, rule, message} of all) {
         const row = rows.get(key) ?? rows.get(place?.replace('--set ', ''));

@@ -242,7 +242,8 @@ export function showLive(page, {live, database, version}) {
     if (!isOf({board: its}, history.board)) return chart.refuse(error.message);
     if (!(error instanceof Refused)) return openError(error);
     keys.refuse(error.problems, its);
-    message.textContent = `This board is refused; Undo takes the change back. ${error.message}`;
+    const how = history.canUndo ? '; Undo takes the change back. ' : ': ';
+    message.textContent = `This board is refused${how}${error.message}`;
   }
   const more = source => ({source, frames: frames[source]});
   const askCore = inTurn(
