@@ -82,10 +82,11 @@ def _is_set(value):
     return _is_list(value, 2, lambda text: text == "" or _is_text(text)) and len(value) == 2
 
 
-# What a plan may take as it is: a word, a list of words, or a map of one key to one of them.
+# What a plan may take as it is: a word, a list of words, a map of one key to one of them, or a list of these.
 _WORD = r"[\w.+-]+"
 _WORDS = rf"{_WORD}|\[{_WORD}(?:, ?{_WORD})*\]"
-_VALUE = rf"{_WORDS}|{{{_WORD}: (?:{_WORDS})}}"
+_PLAIN = rf"(?:{_WORDS}|{{{_WORD}: (?:{_WORDS})}})"
+_VALUE = rf"{_PLAIN}|\[{_PLAIN}(?:, ?{_PLAIN})*\]"
 
 
 def _is_value(value):
@@ -114,7 +115,8 @@ _RULES = {  # key of a body: what is right, and the same in words
     "truth_scale": _number(1e-6, 1e6, int, float),
     "fit": (lambda value: value in ("crop", "pad"), "crop or pad"),
     "offset": _number(-4096, 4096, int),
-    "vary": (_varies, f"one or two keys, each with a list of plain values; at most {POINTS} points"),
+    "vary": (_varies, "one or two keys, each with values such as 3, [a, b], {rows: [a, b]}; "
+             f"at most {POINTS} points"),
     "record": (lambda value: isinstance(value, bool), "true or false"),
     "name": (lambda value: _is_text(value, 200, r"[A-Za-z0-9][A-Za-z0-9_.-]*\.yaml"),
              "letters, digits, _ . and -, with .yaml at the end"),

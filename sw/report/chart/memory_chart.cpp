@@ -65,6 +65,7 @@ constexpr double kHalo = 1;          // on each side of an edge, where it crosse
 constexpr double kBankWidth = 256;
 constexpr double kBankRight = kMargin + kBankWidth;
 constexpr double kBankPadding = 9;  // at both sides
+constexpr double kBusyWidth = 146;  // of "busy 100.0 %, 100.0 % mJ"
 constexpr double kBetweenBanks = 10;
 constexpr double kLabelHeight = kNote.size * kLetterHeight;
 constexpr double kLabelFromBank = 18;
@@ -595,13 +596,14 @@ class Chart {
       const std::string load = paint("fill", load_colour(busy, 100));
       const std::optional<platform::BankEnergyStatistics>& energy = run_->banks[index].energy;
       const std::string share = energy ? fmt::format(", {} % mJ", measured(energy->energy_percent)) : "";
-      const Box shares{bar.x + 134, bar.y + 2.5, bar.width - 134, 8};
+      const Box shares{bar.x + kBusyWidth + 4, bar.y + 2.5, bar.width - kBusyWidth - 4, 8};
       blocks_ += rect_element(bank.box, 4, load + " fill-opacity=\"0.2\"");
       draw_bank_line(bank.box, bank.box.y + kPadding, name, kName, rate);
-      blocks_ += text_element(fmt::format("busy {} %{}", measured(busy), share), kNote, bar.x, bar.y, 130) +
-                 rect_element(shares, 2, paint("fill", "free")) +
-                 rect_element({shares.x, shares.y, shares.width * busy / 100, 8}, 2, load) +
-                 frame_element(shares, 2, "line", 0.75);
+      blocks_ +=
+          text_element(fmt::format("busy {} %{}", measured(busy), share), kNote, bar.x, bar.y, kBusyWidth) +
+          rect_element(shares, 2, paint("fill", "free")) +
+          rect_element({shares.x, shares.y, shares.width * busy / 100, 8}, 2, load) +
+          frame_element(shares, 2, "line", 0.75);
       bar.y += kNoteStep;
     }
     draw_bank_line(bank.box, bar.y, size, kNote, kind);

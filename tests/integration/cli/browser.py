@@ -10,6 +10,9 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
+AXE = pathlib.Path(os.environ.get("STEREOTLM_AXE", "/usr/share/nodejs/axe-core/axe.min.js"))
+
+
 def number(text):
     return float(text.replace(",", "").replace("−", "-").replace(" %", "").replace("+", ""))
 
@@ -83,6 +86,12 @@ class Browser:
     def errors(self):
         """What the console has said since the last call."""
         return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def violations(self):
+        """What axe-core finds, where it is installed."""
+        return self.driver.execute_async_script(
+            AXE.read_text() + "; const done = arguments[0]; axe.run().then(all => done("
+            "all.violations.map(each => [each.id, each.nodes[0].html])))") if AXE.exists() else []
 
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)

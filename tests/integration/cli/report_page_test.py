@@ -148,6 +148,7 @@ class EveryChart(PageTest):
                 with self.subTest(page=name, width=width, theme=theme):
                     self.browser.open(page, width, theme)
                     self.assertEqual(self.charts(), self.CHARTS[name].split())
+                    self.assertEqual(self.browser.violations(), [])
                     self.is_whole(width, theme)
                     self.browser.screenshot(f"{name}_{width}_{theme}")
 

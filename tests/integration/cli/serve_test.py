@@ -298,7 +298,8 @@ class Figures(ServeTest):
 
     def test_sweep_gives_all_points(self):
         server = self.serve()
-        vary = {"matcher.window": ["5", "7", "6"], "allocation.left_image": ["[bank0, bank1]", "bank2"]}
+        vary = {"matcher.window": ["5", "7", "6"],
+                "allocation.left_image": ["[bank0, bank1]", "[{rows: [bank0, bank1]}, bank2]"]}
         lines = server.stream("/sweep", {"board": "own.yaml", "sets": SMALL, "vary": vary})
         self.assertIn("problems", lines[-1])  # of window 6
         vary["matcher.window"].pop()

@@ -40,9 +40,10 @@ export function htmlTable(names, rows, most = kMostRows) {
   const textOf = cell => cell instanceof Node ? cell : Number.isInteger(cell) ? whole(cell) : value(cell);
   const classOf = cell => isNumber(cell) && 'number';
   const rowOf = row => h('tr', null, row.map(cell => h('td', {class: classOf(cell)}, textOf(cell))));
-  const head = names.map((name, i) => h('th', {scope: 'col', class: classOf(rows[0]?.[i])}, name));
+  const head = names.map(
+      (name, i) => name ? h('th', {scope: 'col', class: classOf(rows[0]?.[i])}, name) : h('td'));
   return h(
-      'div', {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Table'},
+      'div', {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': 'Table'},
       h('table', null, h('thead', null, h('tr', null, head)),
         h('tbody', null, rows.slice(0, most).map(rowOf))),
       noteLine(rows.length > most && `${whole(rows.length - most)} more rows: in the CSV`));

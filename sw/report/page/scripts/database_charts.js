@@ -1,7 +1,7 @@
 // The charts of a database: any two of its columns with the front of Pareto, and parallel coordinates.
 import {addChart, legend} from './card.js';
 import {checkBox, choice, controls, folded, h, note, s} from './dom.js';
-import {brief, count, different, least, most, value, whole} from './format.js';
+import {brief, count, different, least, most, value, varyText, whole} from './format.js';
 import {addBrush, axisBelow, axisLeft, cut, layeredDrawing, numeric, ordinal} from './plot.js';
 import {kRateColumns} from './points.js';
 import {css, heat, nthColour, styleColour} from './theme.js';
@@ -286,7 +286,7 @@ export function addParallel(page, points) {
     id: 'parallel',
     wide: true,
     draw,
-    title: `${points.keys.length} keys vary`,
+    title: varyText(points.keys.length),
     note: 'One line for each selected point, at most 4000. Drag along an axis to select; click it to clear.',
     body: folded(
         'Axes', note('Ctrl-click takes or leaves an axis.'),

@@ -34,6 +34,7 @@ export const signed = (number, text) =>
 // A gain, as a share of what there was.
 export const gainText = gain => Math.abs(gain) < 0.0005 ? '≈ 0' : signed(gain, percent);
 export const count = (number, noun) => `${whole(number)} ${noun}${number === 1 ? '' : 's'}`;
+export const varyText = keys => `${count(keys, 'key')} ${keys === 1 ? 'varies' : 'vary'}`;
 
 // For ticks: 1200 -> 1.2k.
 export function brief(number) {

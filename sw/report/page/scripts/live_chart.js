@@ -9,6 +9,7 @@ const kDrags = 4;           // pixels that the pointer moves before a buffer is 
 const kLeastChange = 0.05;  // MB/s
 const kMostChanges = 6;     // that are named
 const kNewBank = '#new';
+const kHint = 'Drag a buffer into another bank; by keys: go to it with the arrows, Enter, arrows, Enter.';
 
 const labelOf = buffer => buffer.dataset.key.replace('allocation.', '');
 const bankOf = element => element?.closest?.('.block[id^="bank-"]')?.id.slice('bank-'.length);
@@ -36,11 +37,10 @@ export function makeChart({place, drop}) {
   const target = h('div', {class: 'new-bank', id: 'new-bank'}, 'Drop a buffer here: into a new bank');
   const changes = h('p', {class: 'note', id: 'chart-changes'});
   const group = h('div');
-  const element = h('div', {class: 'live-chart'}, group, target, status, changes);
+  const told = h('div', {class: 'told'}, status, changes);
+  const element = h('div', {class: 'live-chart'}, group, target, told);
   const ghost = h('div', {class: 'ghost', hidden: true});
   document.body.append(ghost);
-  const kIdle =
-      'Drag a buffer into another bank. By keys: go to a buffer with the arrows, Enter, arrows, Enter.';
   let run = null;
   let held = null;      // {key, label, from, bank, x, y, isDragged, byKeys}
   let kept = null;      // the key of the buffer that had the focus
@@ -63,11 +63,11 @@ export function makeChart({place, drop}) {
     held = null;
     ghost.hidden = true;
     document.body.classList.remove('dragging');
+    told.classList.remove('held');
     for (const block of blocks()) block.classList.remove('over');
     target.classList.remove('over');
-    status.textContent = kIdle;
     const moves = isDropped && bank && bank !== from;
-    if (moves) status.textContent = `${label} is in ${nameOf(bank)}.`;
+    status.textContent = moves ? `${label} is in ${nameOf(bank)}.` : '';
     kept = key;
     if (moves)
       drop(key, bank === kNewBank ? newBankName(run.settings) : bank, bank === kNewBank);
@@ -96,6 +96,7 @@ export function makeChart({place, drop}) {
     if (!held.isDragged && Math.hypot(event.clientX - held.x, event.clientY - held.y) < kDrags) return;
     held.isDragged = true;
     document.body.classList.add('dragging');
+    told.classList.add('held');
     hideTooltip();
     ghost.hidden = false;
     ghost.textContent = held.label;
@@ -122,6 +123,7 @@ export function makeChart({place, drop}) {
       if (held) return end(true);
       const from = bankOf(buffer);
       held = {key: buffer.dataset.key, label: labelOf(buffer), from, bank: from, byKeys: true};
+      told.classList.add('held');
       status.textContent =
           `${held.label} is held: choose a bank with the arrows, then Enter. Escape: leave it.`;
     } else if (held && event.key.startsWith('Arrow')) {
@@ -164,7 +166,7 @@ export function makeChart({place, drop}) {
     const before = ratesOf(with_);
     addMemory(
         group, [run],
-        link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : []);
+        link => before.has(link.name) ? [`${name}: ${fixed(before.get(link.name), 1)} MB/s`] : [], kHint);
     const svg = group.querySelector('svg.memory-chart');
     const changed = new Set(links.map(([link]) => link));
     for (const link of linksOf(svg)) link.element.classList.toggle('changed', changed.has(link.name));
@@ -178,8 +180,10 @@ export function makeChart({place, drop}) {
         rx: 3,
         class: 'handle'
       }));
-      mark(buffer, [labelOf(buffer), bankText(bankOf(buffer)), 'drag it, or press Enter, to move it']);
-      buffer.setAttribute('role', 'button');
+      const texts = [...buffer.querySelectorAll('text')].map(text => text.textContent).join(' ');
+      const how = 'drag it, or press Enter, to move it';
+      mark(buffer, [`${texts} words`, bankText(bankOf(buffer)), how]).setAttribute('role', 'button');
+      buffer.closest('.block').setAttribute('role', 'group');
     }
     if (left !== undefined) group.querySelector('.memory').scrollLeft = left;
     group.style.minHeight = '';
@@ -192,6 +196,5 @@ export function makeChart({place, drop}) {
   function refuse(why) {
     if (held) status.textContent = `${held.label}: not into ${nameOf(held.bank)}: ${why}`;
   }
-  status.textContent = kIdle;
   return {show, refuse, element};
 }

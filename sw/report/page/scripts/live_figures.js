@@ -48,7 +48,7 @@ export const figureCells = (runs, pinned) => kFigures.map(([title, source, numbe
       then && now &&
           h('dd', {class: 'difference'},
             `A: ${textOf(numberOf(then), then)}, ${
-                Math.abs(difference) < 1e-9 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
+                Math.abs(difference) < 0.005 ? 'the same' : signed(difference, each => fixed(each, 2))}`),
       h('dd', {class: 'note'}, now ? noteOf(now) : ''));
 });
 

@@ -3,7 +3,8 @@
 // Why a board is refused: problems with place, key, value, rule and message.
 export class Refused extends Error {
   constructor(problems) {
-    super(problems.map(({message}) => message).join('\n'));
+    super(problems.map(({place, message}) => message.includes(' ') ? message : `${place}: ${message}`)
+              .join('\n'));
     this.problems = problems;
   }
 }

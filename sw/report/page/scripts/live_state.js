@@ -4,14 +4,17 @@
 const kBoard = 'board';
 const kCalibration = 'calibration';
 
-// What was set at a path, or below it, goes when the path is set.
-const isWithin = (key, path) => `${key}.`.startsWith(`${path}.`);
+// What was set at a path, or below it, goes when the path is set. So does, with the kind of a bank, what was
+// set of it but its words.
+const isWithin = (key, path) => `${key}.`.startsWith(`${path}.`) ||
+    (/^ssram\..*\.kind$/.test(path) && key.startsWith(path.slice(0, -4)) && !key.endsWith('.words'));
 
-// A board: {preset, sets: [[key, YAML], ..], calibration}. It is never changed.
+// A board: {preset, sets: [[key, YAML], ..], calibration}. It is never changed. A key that is set to nothing
+// has that of the preset again.
 export function withSets(board, changes) {
   let sets = board.sets;
   for (const [path, text] of changes) sets = [...sets.filter(([key]) => !isWithin(key, path)), [path, text]];
-  return {...board, sets};
+  return {...board, sets: sets.filter(([, text]) => text !== '')};
 }
 
 export const splitSet = text => {
@@ -79,6 +82,10 @@ export class History {
 const parsed = text => JSON.parse(text.replace(/[A-Za-z][\w-]*/g, '"$&"'));
 const written = value => JSON.stringify(value).replaceAll('"', '').replace(/([:,])/g, '$1 ');
 
+// The banks of the stripes of a buffer, with one in another bank. One that was there changes places with it.
+const swapped = (banks, part, bank) =>
+    banks.map((each, i) => i === part ? bank : each === bank ? banks[part] : each);
+
 // The changes that move a buffer, such as allocation.left_image[0] or allocation.left_lut.rows[1]. A joint
 // table is the buffer of left_lut, and moves as right_lut too.
 export function movesOf(settings, buffer, bank) {
@@ -87,9 +94,7 @@ export function movesOf(settings, buffer, bank) {
   const value = parsed(settingOf(key));
   const list = Array.isArray(value) ? [...value] : [value];
   const place = Number(index ?? 0);
-  list[place] = part === undefined ?
-      bank :
-      {rows: list[place].rows.map((other, i) => i === Number(part) ? bank : other)};
+  list[place] = part === undefined ? bank : {rows: swapped(list[place].rows, Number(part), bank)};
   const text = written(Array.isArray(value) ? list : list[0]);
   const isJoint = key === 'allocation.left_lut' && settingOf('fpga.tables') === 'joint';
   return [[key, text], ...isJoint ? [['allocation.right_lut', text]] : []];

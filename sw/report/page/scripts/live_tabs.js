@@ -93,6 +93,15 @@ export function makePictures(boardNow, fail) {
       state, shown);
 }
 
+// Values with commas between them; a value may be a list or a map.
+const valuesOf = text => {
+  let depth = 0;
+  return text.replace(/[,[\]{}]/g, sign => {
+    depth += '[{'.includes(sign) - ']}'.includes(sign);
+    return sign === ',' && depth === 0 ? '\n' : sign;
+  }).split('\n').map(word => word.trim()).filter(Boolean);
+};
+
 // A sweep of one or two keys. now(): [board, source, frames].
 export function makeSweep({keys}, now, open, fail) {
   const listed =
@@ -115,22 +124,15 @@ export function makeSweep({keys}, now, open, fail) {
   async function start() {
     controller?.abort();
     controller = new AbortController();
-    const vary = Object.fromEntries(
-        lines
-            .map(
-                ([key, values]) =>
-                    [key.value.trim(),
-                     values.value.split(/,(?![^[{]*[\]}])/).map(word => word.trim()).filter(Boolean)])
-            .filter(([key]) => key));
+    const all = lines.map(([key, values]) => [key.value.trim(), valuesOf(values.value)]);
+    if (all[0][0] === all[1][0]) return fail(new Error('Choose a key, or two different ones.'));
+    const vary = Object.fromEntries(all.filter(([key]) => key));
     const [board, source, frames] = now();
-    const varied = Object.keys(vary);
-    const fixedSets = board.sets.filter(([key]) => !varied.includes(key));
     fail(null);
     bar.hidden = false;
     try {
       const {database} = await askLong(
-          'sweep', {...board, sets: fixedSets}, {source, frames, vary}, controller.signal,
-          (done, of, text) => {
+          'sweep', board, {source, frames, vary}, controller.signal, (done, of, text) => {
             bar.max = of;
             bar.value = done;
             state.textContent = text;

@@ -29,7 +29,12 @@ function useInPage(svg, links, moreLines = () => []) {
   for (const title of svg.querySelectorAll('title')) {
     const element = title.parentElement;
     title.remove();
-    if (element === svg) continue;
+    if (element === svg) {
+      // Its marks have names of their own: it is more than one picture.
+      svg.setAttribute('role', 'group');
+      svg.setAttribute('aria-label', title.textContent);
+      continue;
+    }
     const link = links.find(each => each.element === element);
     mark(element, [...title.textContent.split('\n'), ...(link ? moreLines(link) : [])]);
   }
@@ -53,8 +58,8 @@ function openAtHighest(body, svg) {
 }
 
 // The chart of a run, or those of two at the same place, one shown at a time. `moreLines`: for the tooltips
-// of the links of one run.
-export function addMemory(page, runs, moreLines = () => []) {
+// of the links of one run; `hint`: what can be done.
+export function addMemory(page, runs, moreLines = () => [], hint = 'The board as it was run.') {
   const svgs = runs.map(run => parsedSvg(run.memory_chart));
   const links = svgs.map(linksOf);
   const ratesOf = ({name}) => links.map(some => some.find(link => link.name === name)?.rate);
@@ -78,8 +83,7 @@ export function addMemory(page, runs, moreLines = () => []) {
     id: 'memory',
     wide: true,
     ...runs.length > 1 ? differenceText(links, ratesOf) : trafficText(runs[0], links[0]),
-    note: 'The board as it was run, with the traffic of each link. Each block and link has its figures: ' +
-        'point at it, or go there with the arrow keys.',
+    note: `${hint} Each block and link has its figures: point at it, or go there with the arrow keys.`,
     body: [chosen, body]
   });
   show(0);

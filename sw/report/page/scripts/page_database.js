@@ -4,7 +4,8 @@ import {addParallel, addScatter} from './database_charts.js';
 import {button, folded, h, note, textBox} from './dom.js';
 import {resourceText} from './findings.js';
 import {
-    capital, count, different, fixed, inOrder, kRates, lossText, rateWith, shortened, value, whole,
+    capital, count, different, fixed, inOrder, kRates, lossText, rateWith, shortened, value, varyText,
+    whole,
 } from './format.js';
 import {kLostPixels, kRateColumns, Points} from './points.js';
 
@@ -126,8 +127,8 @@ export function showDatabase(page, {database}, open = null) {
         points.losing() > 0 ? `; pixels are lost in ${whole(points.losing())} of them` : ''}`,
     sub:
         h('p', {class: 'note'},
-          `${names.size === 1 ? `${[...names][0]}: ` : ''}${points.keys.length} keys vary${
-              bad ? `; ${whole(bad)} points are impossible or have failed` : ''}.`)
+          `${names.size === 1 ? `${[...names][0]}: ` : ''}${varyText(points.keys.length)}${
+              bad ? `; ${count(bad, 'point')} ${bad === 1 ? 'is' : 'are'} impossible or failed` : ''}.`)
   });
   addAnswers(page, [
     [

@@ -39,8 +39,8 @@ export function showLive(page, {live, database, version}) {
   addHead(page, {kind: 'live board', name: '', headline: ''});
   const [name, headline] = [page.querySelector('.top b'), page.querySelector('h1')];
   const figures = h('dl', {class: 'answers', id: 'figures'});
-  const message = h('p', {class: 'bad', id: 'message', role: 'alert'});
-  const keys = makeKeys(live, set);
+  const message = h('p', {class: 'bad', id: 'message', role: 'alert', tabindex: '0'});
+  const keys = makeKeys(live, set, openError);
   const chart = makeChart({
     place: (buffer, bank, isNew) => showBoard(buffer ? moved(buffer, bank, isNew) : history.board),
     drop: (buffer, bank, isNew) => history.show(moved(buffer, bank, isNew))
@@ -153,7 +153,8 @@ export function showLive(page, {live, database, version}) {
         }
       },
         buttons);
-  page.append(tools, exports, message, figures, list, ...panels);
+  const unfold = h('details', {class: 'more'}, h('summary', null, 'What these figures mean'));
+  page.append(tools, exports, message, unfold, figures, list, ...panels);
   open(database && !boardOf(location.hash) ? tabs.length - 1 : 0);
   boards.append(
       h('option', {value: ''}, 'choose'),
@@ -179,6 +180,7 @@ export function showLive(page, {live, database, version}) {
   // Changes of the board.
   function set(changes) {
     history.show(withSets(history.board, changes));
+    return history.board;
   }
   function moved(buffer, bank, isNew) {
     const {settings} = (runs.preloaded ?? runs.camera).run;
@@ -239,8 +241,9 @@ export function showLive(page, {live, database, version}) {
     // A text above the chart would move the banks away from the pointer.
     if (!isOf({board: its}, history.board)) return chart.refuse(error.message);
     if (!(error instanceof Refused)) return openError(error);
-    keys.refuse(error.problems);
-    message.textContent = `This board is refused: ${error.message}`;
+    keys.refuse(error.problems, its);
+    const how = history.canUndo ? '; Undo takes the change back. ' : ': ';
+    message.textContent = `This board is refused${how}${error.message}`;
   }
   const more = source => ({source, frames: frames[source]});
   const askCore = inTurn(
@@ -269,13 +272,15 @@ export function showLive(page, {live, database, version}) {
     shown = its;
     page.classList.remove('refused');
     askCore(its);
+    // Other texts do not move the banks away from the pointer.
+    figures.style.height = its === history.board ? '' : `${figures.getBoundingClientRect().height}px`;
     markWaiting();
   }
   function changed() {
     previous = settled;
     question?.abort();
     message.textContent = '';
-    keys.refuse([]);
+    keys.refuse([], history.board);
     showBoard(history.board);
     undo.disabled = !history.canUndo;
     redo.disabled = !history.canRedo;
@@ -291,7 +296,7 @@ export function showLive(page, {live, database, version}) {
       // While a buffer is held, the computer is not asked.
       const isAsked = shown === history.board || cell.dataset.source === 'preloaded';
       cell.querySelector('.state').textContent =
-          isOf(answer, shown) ? '' : isAsked ? ' …' : ', before the move';
+          isOf(answer, shown) ? '' : isAsked ? ' …' : ', before';
     }
     chart.element.classList.toggle('stale', isChartDue || chartOf !== runs[view] || !isOf(chartOf, shown));
     cards.classList.toggle('stale', drawn !== `${view} ${addressOf(history.board)}`);
@@ -348,7 +353,7 @@ export function showLive(page, {live, database, version}) {
     requestAnimationFrame(() => requestAnimationFrame(() => {
                             cards.style.minHeight = '';
                           }));
-    drawGains(has ? gains.knobs : null);
+    if (!question) drawGains();
     markWaiting();
   }
   function pinOrNot() {
@@ -380,13 +385,15 @@ export function showLive(page, {live, database, version}) {
       drawn = '';
       askWhenQuiet();
     } catch (error) {
-      gainsHost.replaceChildren();
       if (error.name !== 'AbortError') openError(error);
     }
+    if (controller === question) question = null;
+    if (!question) drawGains();
   }
-  function drawGains(knobs) {
+  function drawGains() {
     gainsHost.replaceChildren();
-    if (!knobs) return;
+    if (gains?.address !== addressOf(history.board)) return;
+    const {knobs, source} = gains;
     const kMost = 8;
     const best = knobs.changes.filter(({gained_percent: gained}) => gained > 0.05).slice(0, kMost);
     const rows = best.map(
@@ -402,7 +409,8 @@ export function showLive(page, {live, database, version}) {
       wide: true,
       title: best.length ? 'The single changes that gain most' : 'No single change gains frames',
       body: htmlTable(['', 'change', 'frames/s', 'gain', 'slices', ''], rows),
-      note: `Of ${count(knobs.changes.length, 'change')}; all are below, under what to change.`
+      note: `Of ${count(knobs.changes.length, 'change')}, for ${new Map(kViews).get(source)}. While it ` +
+          'is shown, all are below, under what to change.'
     });
     gainsHost.replaceChildren(group);
   }

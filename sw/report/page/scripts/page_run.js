@@ -19,7 +19,8 @@ export function addPictureOf(page, run) {
   const {left, disparity, disparities} = run.pictures ?? {};
   const [width, height] = ['image.width', 'image.height'].map(key => settingOf(run, key));
   addPicture(page, {
-    title: layers.length ? `Ports wait ${waitingRows(run)}` : 'The picture and its disparities',
+    title: layers.length ? `On the picture, ports wait ${waitingRows(run)}` :
+                           'The picture and its disparities',
     layers,
     note: [
       layers.length     ? 'Colour: cycles in which ports wait, at the place whose results come next.' :

@@ -58,6 +58,7 @@ export function addPicture(page, {id = 'picture', title, note, pictures, layers,
   const stack = h('div', {
     class: 'picture hovers',
     tabindex: '0',
+    role: 'group',
     'aria-label': `${title}. Arrow keys read the picture.`,
     style: '--split:50%;--overlay:40%'
   });

@@ -350,17 +350,18 @@ TEST(MemoryChart, ColoursByTheShareOfThePeak) {
 
 TEST(MemoryChart, ColoursABankAndItsBarByHowBusyItIs) {
   for (const auto& [percent, colour, width] :
-       {std::tuple(99.8, "load4", "103.79"), std::tuple(50.0, "load3", "52"),
-        std::tuple(24.9, "load1", "25.9"), std::tuple(0.0, "load0", "0")}) {
+       {std::tuple(100.0, "load4", "88"), std::tuple(50.0, "load3", "44"), std::tuple(24.9, "load1", "21.91"),
+        std::tuple(0.0, "load0", "0")}) {
     Statistics run = run_of_two_ports();
     run.banks[0].utilization = percent / 100;
+    run.banks[0].energy.emplace().energy_percent = 100;
     const std::string svg = group_of(svg_of(run), "bank-bank0");
     const std::string fill = std::string("class=\"fill-") + colour + '"';
     EXPECT_THAT(svg, HasSubstr("rx=\"4\" " + fill)) << percent;
     EXPECT_THAT(svg, HasSubstr(" fill-opacity=\"0.2\"/>")) << "the whole bank";
     EXPECT_THAT(svg, HasSubstr(std::string("width=\"") + width + "\" height=\"8\" rx=\"2\" " + fill))
-        << "of 104";
-    EXPECT_THAT(svg, HasSubstr(">busy " + measured(percent) + " %</text>"));
+        << "of 88";
+    EXPECT_THAT(svg, HasSubstr(">busy " + measured(percent) + " %, 100.0 % mJ</text>"));
     EXPECT_THAT(svg, HasSubstr("rx=\"0\" class=\"fill-used\"")) << "words";
   }
 }
