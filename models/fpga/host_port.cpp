@@ -72,8 +72,14 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   // this cycle.
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
-  if (is_moved_ && arbitration_.arbiter(bank).grants_at_once() && is_in_step_) serve_in_step(cycle);
+  const memory::BankArbiter& arbiter = arbitration_.arbiter(bank);
+  const bool is_whole = is_moved_ && is_in_step_ && !arbiter.has_rows();
+  bool has_direction = arbiter.grants_at_once();  // each further word of the burst is granted at once
   while (bus_.word_waits()) {
+    if (is_whole && has_direction) {
+      serve_in_step(cycle);
+      break;
+    }
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
     const std::uint64_t edge_ps = clock_.edge_ps(cycle);
     // Another master of the registers may start a frame that uses the bank: when the finishing frame ends,
@@ -89,7 +95,8 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
     const memory::BankArbiter::Outcome outcome = decide(bank, cycle, burst_.write);
     served_.push_back({cycle, 1, outcome});
     record_served(cycle, 1, grants(outcome), outcome.cause);
-    if (grants(outcome)) serve_words(1, cycle);
+    has_direction = grants(outcome);
+    if (has_direction) serve_words(1, cycle);
     ++cycle;
   }
   if (!frames_.is_running()) count_words_outside();
@@ -128,13 +135,14 @@ void HostPort::serve_words(std::size_t words, std::uint64_t last_cycle) {
   }
 }
 
-// Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended: each grant
-// after the first one has the same outcome, and changes the state of the bank's policy as a cycle without
-// request does (memory::ArbitrationPolicy).
+// Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended, and its bank
+// does not turn round: each grant after the first one has the same outcome, and changes the state of the bank's
+// policy as a cycle without request does (memory::ArbitrationPolicy).
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
   served_.push_back({first, words, decide(*burst_.bank, first, burst_.write)});
+  if (words > 1) decide(*burst_.bank, first + words - 1, burst_.write);  // the bank turns round from there on
   record_served(first, words, true, 0);
   serve_words(words, first + words - 1);
 }
