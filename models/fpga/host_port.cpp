@@ -135,9 +135,9 @@ void HostPort::serve_words(std::size_t words, std::uint64_t last_cycle) {
   }
 }
 
-// Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended, and its bank
-// does not turn round: each grant after the first one has the same outcome, and changes the state of the bank's
-// policy as a cycle without request does (memory::ArbitrationPolicy).
+// Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended, and its
+// bank does not turn round: each grant after the first one has the same outcome, and changes the state of the
+// bank's policy as a cycle without request does (memory::ArbitrationPolicy).
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();

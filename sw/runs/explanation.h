@@ -70,8 +70,8 @@ class Explanation {
     double frames_per_second = 0;
     double uncertainty = 0;        // 0 if the rate is proven
     std::int64_t lost_pixels = 0;  // by captures
-    double memory_mj = 0;          // energy of the memories for each frame, in the long run, of whole pictures
-    std::string failure;           // the reason if the run has failed; else empty
+    double memory_mj = 0;  // energy of the memories for each frame, in the long run, of whole pictures
+    std::string failure;   // the reason if the run has failed; else empty
     bool loses_pixels() const { return lost_pixels > 0; }
     bool is_whole() const { return failure.empty() && !loses_pixels(); }
   };
