@@ -149,8 +149,8 @@ class Explain(ProgramTest):
         self.succeeds(run("run", "fpl2003", *SMALL, *CAMERA_RATES, "--timing-only", "--frames", 42, "--out",
                           self.out))
         stats = self.stats()
-        rate = stats["frames_per_second"]["steady"]
-        self.assertEqual(document["frames_per_second"], rate)
+        rate = min(stats["frames_per_second"]["steady"], stats["frames_per_second"]["exact_most"])
+        self.assertAlmostEqual(document["frames_per_second"], rate)
         self.assertEqual(document["blame"], [])
         self.assertLess(rate, 0.97 * stats["frames_per_second"]["core"])
         busy = {"pci": stats["pci"]["busy_clocks"] / stats["pci"]["clocks"],
@@ -185,8 +185,8 @@ class Explain(ProgramTest):
                            "--out", self.out]
                 self.succeeds(run(*command, *sets(*kept, *change["sets"])))
                 rates = self.stats()["frames_per_second"]
-                self.assertEqual(rates["core" if source else "steady"], change["frames_per_second"],
-                                 change["sets"])
+                rate = rates["core"] if source else min(rates["steady"], rates["exact_most"])
+                self.assertAlmostEqual(rate, change["frames_per_second"], msg=change["sets"])
 
     def test_the_limiter_is_named_first(self):
         shared = sets("allocation.left_image=[bank0, bank0]")
@@ -212,7 +212,7 @@ class Explain(ProgramTest):
         ]
         for options, limiter in cases:
             text = unwrapped(self.succeeds(run("explain", "fpl2003", *options)))
-            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+ ± [\d.]+ frames/s"
+            self.assertRegex(text, rf"^fpl2003, the whole computer: [\d.]+(?: ± [\d.]+)? frames/s"
                                    rf"(?: with pixels lost)?, limited by {limiter}")
 
     def test_frames_are_those_of_the_option(self):
