@@ -136,13 +136,14 @@ void HostPort::serve_words(std::size_t words, std::uint64_t last_cycle) {
 }
 
 // Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended, and its
-// bank does not turn round: each grant after the first one has the same outcome, and changes the state of the
-// bank's policy as a cycle without request does (memory::ArbitrationPolicy).
+// bank is ready for its direction: each grant after the first one has the same outcome, and changes the state
+// of the bank's policy as a cycle without request does (memory::ArbitrationPolicy).
 void HostPort::serve_in_step(std::uint64_t first_cycle) {
   const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
   const std::size_t words = bus_.words_left();
   served_.push_back({first, words, decide(*burst_.bank, first, burst_.write)});
-  if (words > 1) decide(*burst_.bank, first + words - 1, burst_.write);  // the bank turns round from there on
+  // An access in the other direction waits from the last word on.
+  if (words > 1) decide(*burst_.bank, first + words - 1, burst_.write);
   record_served(first, words, true, 0);
   serve_words(words, first + words - 1);
 }

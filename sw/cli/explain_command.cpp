@@ -148,14 +148,18 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
 // keys: by the key, or by its new value if other values of the key have a line.
 std::string changes_text(const BoardConfig& board, const Explanation& explanation) {
   std::string text = fmt::format(
-      "one change at a time: {} boards simulated{}; *: the disparities change too{}\n"
+      "one change at a time: {} boards simulated; *: the disparities change too{}\n{}"
       "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n"
       "now {:.3f} mJ a frame; mJ %: the change of that, of {}\n"
       "  {:>8} {:>8} {:>8} {:>7} {:>6} {:>4}  change: from -> to\n",
-      explanation.simulated(),
-      explanation.left_out() > 0 ? fmt::format(", {} others proven no better", explanation.left_out()) : "",
-      explanation.camera() ? "; ~: within the uncertainty" : "", explanation.now().memory_mj,
-      platform::kEnergyIsOf, "frames/s", "gained", "%", "mJ %", "FPGA %", "RAMs");
+      explanation.simulated(), explanation.camera() ? "; ~: within the uncertainty" : "",
+      explanation.left_out() == 0
+          ? ""
+          : fmt::format("{} other ways of a change are left out: none exceeds the rate of the way listed by "
+                        "more than its uncertainty\n",
+                        explanation.left_out()),
+      explanation.now().memory_mj, platform::kEnergyIsOf, "frames/s", "gained", "%", "mJ %", "FPGA %",
+      "RAMs");
   const std::string interruption = explanation.interruption();
   const auto& steps = explanation.steps();
   if (!interruption.empty()) {

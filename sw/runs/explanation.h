@@ -94,11 +94,11 @@ class Explanation {
     BusiestBank busiest;  // without meaning if the run has failed
   };
   // All steps that were simulated, the best first: by their rate, those that lose pixels after the others,
-  // those that have failed last. Of a group only the best. A step that is proven to be no better than another
-  // one of its group is not simulated.
+  // those that have failed last. Of a group only the best. A step is not simulated if it is proven that it
+  // does not exceed the rate of another one of its group by more than its uncertainty.
   const std::vector<Step>& steps() const { return steps_; }
   std::size_t simulated() const { return simulated_; }  // how many of knobs().possible
-  // How many were left out, because others of their groups are proven to be as good, within the uncertainty.
+  // How many of them were left out for that.
   std::size_t left_out() const { return knobs_.possible.size() - simulated_ - next_boards().size(); }
   // "12 of 47 changes were simulated"; empty without an interrupt.
   std::string interruption() const;
