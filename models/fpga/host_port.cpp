@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "models/memory/memory_config.h"
@@ -10,6 +11,10 @@ namespace stereotlm::fpga {
 namespace {
 
 bool grants(const memory::BankArbiter::Outcome& outcome) { return outcome.granted != 0; }
+
+bool are_alike(const memory::BankArbiter::Outcome& a, const memory::BankArbiter::Outcome& b) {
+  return a.requests == b.requests && a.writes == b.writes && a.granted == b.granted && a.cause == b.cause;
+}
 
 }  // namespace
 
@@ -73,11 +78,12 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   std::uint64_t cycle = frames_.is_running() ? 0 : frames_.cycle();
   move_burst();
   const memory::BankArbiter& arbiter = arbitration_.arbiter(bank);
-  const bool is_whole = is_moved_ && is_in_step_ && !arbiter.has_rows();
+  // A record of cycles takes the words one by one, each with its address.
+  const bool is_whole = is_moved_ && !arbiter.has_rows() && (is_in_step_ || frames_.cycles() == nullptr);
   bool has_direction = arbiter.grants_at_once();  // each further word of the burst is granted at once
   while (bus_.word_waits()) {
     if (is_whole && has_direction) {
-      serve_in_step(cycle);
+      serve_at_once(cycle);
       break;
     }
     cycle = std::max(cycle, clock_.edge_at_or_after(bus_.request_ps()));
@@ -135,17 +141,28 @@ void HostPort::serve_words(std::size_t words, std::uint64_t last_cycle) {
   }
 }
 
-// Serves one word a cycle from `first_cycle` on, to the end of the burst. The port is uncontended, and its
-// bank is ready for its direction: each grant after the first one has the same outcome, and changes the state
-// of the bank's policy as a cycle without request does (memory::ArbitrationPolicy).
-void HostPort::serve_in_step(std::uint64_t first_cycle) {
-  const std::uint64_t first = std::max(first_cycle, bus_.request_clock());
+// Serves the words from `first_cycle` on, to the end of the burst. The port is uncontended, and its bank is
+// ready for its direction: each word is granted in the cycle in which it requests. Each grant after the first
+// one has the same outcome, and changes the state of the bank's policy as a cycle without request does
+// (memory::ArbitrationPolicy). So only the first and the last word are decided.
+void HostPort::serve_at_once(std::uint64_t first_cycle) {
+  std::uint64_t cycle = std::max(first_cycle, clock_.edge_at_or_after(bus_.request_ps()));
   const std::size_t words = bus_.words_left();
-  served_.push_back({first, words, decide(*burst_.bank, first, burst_.write)});
+  const memory::BankArbiter::Outcome outcome = decide(*burst_.bank, cycle, burst_.write);
+  if (is_in_step_) {
+    served_.push_back({cycle, words, outcome});
+    record_served(cycle, words, true, 0);
+    cycle += words - 1;
+  } else {
+    served_.push_back({cycle, 1, outcome});
+    for (std::size_t word = 1; word < words; ++word) {
+      cycle = clock_.edge_at_or_after(bus_.next_request_ps(clock_.edge_ps(cycle)));
+      served_.push_back({cycle, 1, outcome});
+    }
+  }
   // An access in the other direction waits from the last word on.
-  if (words > 1) decide(*burst_.bank, first + words - 1, burst_.write);
-  record_served(first, words, true, 0);
-  serve_words(words, first + words - 1);
+  if (words > 1) decide(*burst_.bank, cycle, burst_.write);
+  serve_words(words, cycle);
 }
 
 // What the burst is for; without meaning unless conflicts are recorded.
@@ -161,10 +178,14 @@ void HostPort::count(const Served& served, bool in_frame) {
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
   ConflictRecorder* const conflicts = in_frame ? frames_.conflicts() : nullptr;
+  std::uint64_t alike = 0;  // cycles in a row with the outcome of `next`, which are counted together
   auto next = served_.begin();
   for (; next != served_.end() && next->cycle < end_cycle; ++next) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
-    count({next->cycle, cycles, next->outcome}, in_frame);
+    alike += cycles;
+    const auto after = std::next(next);
+    if (after == served_.end() || after->cycle >= end_cycle || !are_alike(after->outcome, next->outcome))
+      count({next->cycle, std::exchange(alike, 0), next->outcome}, in_frame);
     if (conflicts != nullptr) {
       conflicts->hear_apart(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome),
                             next->outcome.cause);

@@ -110,7 +110,7 @@ class HostPort {
   }
   void move_burst();
   void serve_words(std::size_t words, std::uint64_t last_cycle);
-  void serve_in_step(std::uint64_t first_cycle);
+  void serve_at_once(std::uint64_t first_cycle);
   memory::BankArbiter::Outcome decide(std::size_t bank, std::uint64_t cycle, bool write);
   HostTraffic traffic() const;
   void count_served(std::uint64_t end_cycle, bool in_frame);

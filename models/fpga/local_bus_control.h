@@ -115,8 +115,11 @@ class LocalBusControl final : public LocalBusIf {
   // Whether a word waits for a bank, and the time from which it requests.
   bool word_waits() const { return words_left_ != 0; }
   std::uint64_t request_ps() const { return request_ps_; }
-  // The number of the clock that begins at request_ps().
-  std::uint64_t request_clock() const { return request_clock_; }
+  // The time from which the next word of the burst requests, if a word is granted in the cycle that begins at
+  // `grant_ps`.
+  std::uint64_t next_request_ps(std::uint64_t grant_ps) const {
+    return clock_.edge_ps(clock_.edge_at_or_after(grant_ps) + 1);
+  }
   // Whether a word requests in the cycle that begins at `edge_ps`.
   bool requests(std::uint64_t edge_ps) const { return words_left_ != 0 && request_ps_ <= edge_ps; }
   // Transfers the waiting word, which is granted in the cycle that begins at `grant_ps`. If it is read, it is
