@@ -71,11 +71,7 @@ bool Cpu::interrupted() const {
 }
 
 void Cpu::wait_for_interrupt() {
-  if (interrupted() && !accessed_) {
-    throw std::logic_error(
-        "wait_for_interrupt: the line is still asserted, and no register was accessed since it returned "
-        "last");
-  }
+  if (interrupted() && !accessed_) throw std::logic_error(kNoAccessBetweenWaits);
   while (!interrupted()) wait(interrupts_change_);
   accessed_ = false;
 }

@@ -13,6 +13,10 @@ class BusError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What HostBus::wait_for_interrupt() throws.
+inline constexpr const char* kNoAccessBetweenWaits =
+    "wait_for_interrupt: the line is still asserted, and no register was accessed since it returned last";
+
 // The bus and the memory that a program accesses. Addresses are byte addresses on the bus.
 class HostBus {
  public:

@@ -15,7 +15,8 @@
 
 namespace stereotlm::platform {
 
-// The controls of a computer's blocks: Computer has them in its modules, FastComputer in its loop.
+// The controls of a computer's blocks: Computer has them in its modules, FastComputer and LoopComputer in a
+// loop.
 struct ComputerControls {
   pci::PciBusControl& pci_bus;                           // with its masters and targets
   pci::BridgeControl& bridge;                            // with its DMA channels
@@ -28,7 +29,7 @@ struct ComputerControls {
   ComputerCounters counters(BoardCounters board, std::uint64_t now_ps) const;
 };
 
-// What Computer and FastComputer show of a run.
+// What Computer, FastComputer and LoopComputer show of a run.
 class ComputerView {
  public:
   virtual ~ComputerView() = default;
@@ -36,6 +37,7 @@ class ComputerView {
   fpga::FrameRun& core() { return controls().core; }  // the frames, to observe and to record them
   // To be called while the core runs no frame.
   ComputerCounters counters() { return controls().counters(board_counters(), now_ps()); }
+  virtual std::uint64_t now_ps() const = 0;  // up to which the controls have been stepped
   // Advances a running frame to the present.
   virtual void catch_up() = 0;
   // A measure of progress towards a result. It may be that of an earlier time, unless catch_up() has just
@@ -48,7 +50,6 @@ class ComputerView {
 
  private:
   virtual ComputerControls controls() = 0;
-  virtual std::uint64_t now_ps() const = 0;  // up to which the controls have been stepped
   virtual BoardCounters board_counters() = 0;
 };
 

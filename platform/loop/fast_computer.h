@@ -38,9 +38,10 @@ class FastComputer : public sc_core::sc_module,
   host::HostBridge host_bridge;
   host::Cpu cpu;
 
+  std::uint64_t now_ps() const override { return loop_.now_ps(); }
+
  private:
   ComputerControls controls() override { return loop_.controls(); }
-  std::uint64_t now_ps() const override { return loop_.now_ps(); }
   BoardCounters board_counters() override { return loop_.board().counters(now_ps()); }
   void catch_up() override { loop_.board().catch_up(loop_.now_ps()); }
   void run();

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "models/kernel_time.h"
 #include "platform/assembly/computer.h"
+#include "platform/loop/loop_computer.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -28,15 +28,28 @@ double stall_timeout_seconds(const platform::BoardConfig& board) {
 }  // namespace
 
 CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
+                                   host::FrameSource& pairs, std::uint64_t frames, Binder* binder,
                                    fpga::Fidelity fidelity)
     : Simulation(board, tables, pairs, frames, fidelity),
       fidelity_(fidelity),
       driver_(board, frames, entries_of(tables.left), entries_of(tables.right),
               [this](const driver::DeliveredFrame& frame) { frame_delivered(frame); }),
-      computer_(platform::make_computer("computer", board, driver::host_memory_bytes(board), driver_, left_,
-                                        right_, binder, fidelity)),
-      stall_timeout_seconds_(stall_timeout_seconds(board)) {}
+      stall_timeout_seconds_(stall_timeout_seconds(board)) {
+  const std::uint64_t bytes = driver::host_memory_bytes(board);
+  if (binder == nullptr) {
+    computer_ = std::make_unique<platform::LoopComputer>(board, bytes, left_, right_, fidelity);
+  } else {
+    computer_ = platform::make_computer("computer", board, bytes, driver_, left_, right_, *binder, fidelity);
+  }
+}
+
+std::vector<Result> CameraSimulation::run_through(const std::function<void()>& between) {
+  dynamic_cast<platform::LoopComputer&>(*computer_).run(driver_, [&] {
+    if (!finished()) check_progress();
+    between();
+  });
+  return take_results();
+}
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {
   return simulation_.captured_pair(number, begin_ps).*side_;
@@ -81,7 +94,7 @@ platform::Statistics CameraSimulation::statistics() const {
 
 void CameraSimulation::frame_delivered(const driver::DeliveredFrame& frame) {
   const auto begin = begins_ps_.find(frame.camera_frame);
-  deliveries_.push_back({begin->second, kernel_time::to_ps(sc_core::sc_time_stamp())});
+  deliveries_.push_back({begin->second, now_ps()});
   begins_ps_.erase(begins_ps_.begin(), std::next(begin));
   if (timeline_) timeline_->deliver(deliveries_.back());
   if (driver_.frames_started() == frame.frame + 1) {
@@ -103,13 +116,13 @@ void CameraSimulation::check_progress() {
     const std::uint64_t work = computer_->work_done();
     return std::exchange(last_work_, work) != work;
   };
-  const double idle = (sc_core::sc_time_stamp() - last_work_at_).to_seconds();
+  const double idle = static_cast<double>(now_ps() - last_work_at_ps_) / 1e12;
   bool progressed = has_progressed();
   if (!progressed && idle >= stall_timeout_seconds_) {
     computer_->catch_up();
     progressed = has_progressed();
   }
-  if (progressed) last_work_at_ = sc_core::sc_time_stamp();
+  if (progressed) last_work_at_ps_ = now_ps();
   if (progressed || idle < stall_timeout_seconds_) return;
   throw std::runtime_error(
       fmt::format("no progress for {:.3f} s of simulated time; delivered: {} of {} frames; the driver waits "

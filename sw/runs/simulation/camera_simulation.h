@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,7 +26,17 @@ class CameraSimulation : public Simulation {
   // computer cannot be built.
   CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
-                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
+                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle)
+      : CameraSimulation(board, tables, pairs, frames, &binder, fidelity) {}
+  // The same without the SystemC kernel, at fidelity fast or timing. A process can run any number of them,
+  // one after the other. run_through() takes the place of advance().
+  CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                   host::FrameSource& pairs, std::uint64_t frames, fpga::Fidelity fidelity)
+      : CameraSimulation(board, tables, pairs, frames, nullptr, fidelity) {}
+
+  // Simulates all frames, and returns their results. `between` is called after 10 ms of simulated time or
+  // less, again and again. It may throw, which ends the simulation, or call end_early().
+  std::vector<Result> run_through(const std::function<void()>& between);
 
   // Records the run from its beginning, for take_timeline(). To be called before advance(). statistics() then
   // also checks the identities of the records.
@@ -40,6 +51,9 @@ class CameraSimulation : public Simulation {
   platform::ComputerView& computer() { return *computer_; }
 
  private:
+  CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
+                   host::FrameSource& pairs, std::uint64_t frames, Binder* binder, fpga::Fidelity fidelity);
+
   // The scene in front of one camera.
   class View : public capture::CameraSource {
    public:
@@ -55,6 +69,7 @@ class CameraSimulation : public Simulation {
   const host::StereoPair& captured_pair(std::uint64_t number, std::uint64_t begin_ps);
   void frame_delivered(const driver::DeliveredFrame& frame);
   void check_progress() override;
+  std::uint64_t now_ps() const override { return computer_->now_ps(); }
 
   fpga::Fidelity fidelity_;
   View left_{*this, &host::StereoPair::left};
@@ -69,7 +84,7 @@ class CameraSimulation : public Simulation {
   platform::ComputerCounters counters_;  // counters at the last delivery at which the core was idle
   double stall_timeout_seconds_;
   std::uint64_t last_work_ = 0;
-  sc_core::sc_time last_work_at_;
+  std::uint64_t last_work_at_ps_ = 0;
 };
 
 }  // namespace stereotlm::runs

@@ -66,35 +66,28 @@ Json in_child(const std::function<Json()>& work) {
   return Json::from_cbor(bytes);
 }
 
-// Simulates the whole computer. To be called in a child process that ends afterwards: the simulation is never
-// destroyed.
 Json simulate_computer(const explore::Point& point, const platform::Tables& tables,
                        const std::optional<stats::Accuracy>& accuracy, bool with_core_waits) {
   const platform::BoardConfig& board = *point.board;
   const std::uint64_t frames = point.run.frames;
-  auto* const binder = new Binder;
-  auto* const simulation = new CameraSimulation(board, tables, *blank_pairs(board).release(), frames, *binder,
-                                                fpga::Fidelity::kTiming);
+  const auto pairs = blank_pairs(board);
+  CameraSimulation simulation(board, tables, *pairs, frames, fpga::Fidelity::kTiming);
+  if (with_core_waits) simulation.record_timeline();
+  simulation.run_through([] {
+    if (process::interrupted()) throw explore::GivenUp();
+  });
   double whole_ps = 0;
   std::map<std::string, double> core_waits_ps;
-  const auto take = [&] {
-    const auto turn = platform::allocation_period_frames(board);
-    for (const platform::TimelineEvent& event : simulation->take_timeline().events) {
-      const bool is_wait = event.kind == platform::EventKind::kWait && event.what == std::string("core");
-      if (!is_wait && event.kind != platform::EventKind::kFrame) continue;
-      if (event.frame.value() < frames - platform::steady_frames(frames, turn)) continue;
-      const auto time_ps = static_cast<double>(event.end_ps - event.begin_ps);
-      whole_ps += time_ps;
-      if (is_wait) core_waits_ps[event.why] += time_ps;
-    }
-  };
-  if (with_core_waits) simulation->record_timeline();
-  while (!simulation->finished()) {
-    simulation->advance();
-    take();
+  const std::uint64_t turn = platform::allocation_period_frames(board);
+  for (const platform::TimelineEvent& event : simulation.take_timeline().events) {
+    const bool is_wait = event.kind == platform::EventKind::kWait && event.what == std::string("core");
+    if (!is_wait && event.kind != platform::EventKind::kFrame) continue;
+    if (event.frame.value() < frames - platform::steady_frames(frames, turn)) continue;
+    const auto time_ps = static_cast<double>(event.end_ps - event.begin_ps);
+    whole_ps += time_ps;
+    if (is_wait) core_waits_ps[event.why] += time_ps;
   }
-  Json document = document_of(simulation->statistics(), board, accuracy);
-  take();
+  Json document = document_of(simulation.statistics(), board, accuracy);
   for (const auto& [why, time_ps] : core_waits_ps) document["core_waits"][why] = time_ps / whole_ps;
   return document;
 }
@@ -109,14 +102,9 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, bool wi
     throw std::runtime_error("the tables of the calibration are of another board");
   if (!is_usable) tables_ = platform::identity_tables(board);
   const auto accuracy = quality_.of(board, is_calibrated_ ? &tables_ : nullptr);
-  if (!point.run.camera) {
-    return explore::figures_of(
-        document_of(platform::run_core(board, tables_, point.run.frames), board, accuracy));
-  }
-  const Json document =
-      in_child([&] { return simulate_computer(point, tables_, accuracy, with_core_waits); });
-  if (document.is_null()) throw explore::GivenUp();
-  return explore::figures_of(document);
+  return explore::figures_of(
+      point.run.camera ? simulate_computer(point, tables_, accuracy, with_core_waits)
+                       : document_of(platform::run_core(board, tables_, point.run.frames), board, accuracy));
 }
 
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,

@@ -16,7 +16,7 @@
 
 namespace stereotlm::runs {
 
-// Simulates points of a plan without pixels: a board alone in this process, a whole computer in a child.
+// Simulates points of a plan without pixels.
 class PointSimulator {
  public:
   PointSimulator() = default;

@@ -73,8 +73,9 @@ Simulation::Simulation(const platform::BoardConfig& board, const platform::Table
       slice_cycles_(fpga::steps_cycles(fidelity) ? kSliceCycles : kFastSliceCycles),
       frames_(frames) {}
 
+std::uint64_t Simulation::now_ps() const { return kernel_time::now_ps(); }
+
 std::vector<Result> Simulation::advance() {
-  new_.clear();
   try {
     sc_core::sc_start(slice_cycles_ / board_.fpga.clock_mhz, sc_core::SC_US);
   } catch (const sc_core::sc_report&) {
@@ -87,8 +88,12 @@ std::vector<Result> Simulation::advance() {
                     frames_done()));
   }
   if (!finished()) check_progress();
+  return take_results();
+}
+
+std::vector<Result> Simulation::take_results() {
   if (!new_.empty()) last_ = new_.back();
-  return std::move(new_);
+  return std::exchange(new_, {});
 }
 
 void Simulation::record_conflicts(std::uint64_t frames) {
@@ -120,7 +125,7 @@ void Simulation::check_conflicts(platform::Statistics& statistics) const {
 
 std::uint64_t Simulation::cycles() const {
   return static_cast<std::uint64_t>(
-      std::llround(sc_core::sc_time_stamp().to_seconds() * board_.fpga.clock_mhz * 1e6));
+      std::llround(static_cast<double>(now_ps()) / 1e12 * board_.fpga.clock_mhz * 1e6));
 }
 
 const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
@@ -134,14 +139,15 @@ const host::StereoPair& Simulation::load_pair(std::uint64_t number) {
 
 void Simulation::add_result(Result result) {
   ++frames_done_;
-  result.time_ps = kernel_time::to_ps(sc_core::sc_time_stamp());
+  result.time_ps = now_ps();
   cycles_of_done_ = cycles();
   if (cycles_) {
     cycles_->hand_out(Clock(board_.fpga.clock_mhz).edge_at_or_after(result.time_ps));
     buses_->hand_out(result.time_ps);
   }
   new_.push_back(std::move(result));
-  if (finished()) sc_core::sc_pause();  // nothing after the last frame matters
+  // Nothing after the last frame matters.
+  if (finished() && sc_core::sc_is_running()) sc_core::sc_pause();
 }
 
 std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,

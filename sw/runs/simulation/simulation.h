@@ -93,6 +93,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   const platform::BoardConfig& board() const { return board_; }
   const platform::Tables& tables() const { return tables_; }
   void set_frames(std::uint64_t frames) { frames_ = frames; }
+  virtual std::uint64_t now_ps() const;  // the simulated time
   // Loads a pair, within a SystemC process. An exception of the source ends that process, and advance()
   // throws it.
   const host::StereoPair& load_pair(std::uint64_t number);
@@ -102,6 +103,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   void check_conflicts(platform::Statistics& statistics) const;
   // Hands what the buses do to the trace. A board alone has none.
   virtual void trace_buses(platform::BusTrace& /*buses*/) {}
+  // The results since the last call.
+  std::vector<Result> take_results();
   // Called by advance(). Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 
@@ -133,7 +136,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   std::uint64_t frames_;
   std::uint64_t frames_done_ = 0;
   std::uint64_t cycles_of_done_ = 0;
-  std::vector<Result> new_;  // results since the last advance() began
+  std::vector<Result> new_;  // results since the last take_results()
   Result last_;
   std::optional<platform::Conflicts> conflicts_;
   std::uint64_t recorded_frames_ = kAllFrames;
