@@ -5,7 +5,7 @@ file(GLOB_RECURSE headers RELATIVE ${source} ${source}/models/*.h ${source}/plat
 # The inner loops of the kernels, the reader behind board_yaml.h, and what computer.h makes for fidelity fast.
 list(FILTER headers EXCLUDE REGEX
   "_simd|simd_vectors|filter_arithmetic|board_draft|board_reader")
-list(FILTER headers EXCLUDE REGEX "computer_loop|fast_board|fast_computer")
+list(FILTER headers EXCLUDE REGEX "computer_loop|fast_board|loop_computer")
 message(STATUS "Installing: ${destination}")
 foreach(header IN LISTS headers ITEMS models/testing/gtest_main.cpp)
   file(READ ${source}/${header} text)

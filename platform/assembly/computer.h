@@ -25,7 +25,7 @@ namespace stereotlm::platform {
 // The whole computer (paper figure 4; `--source camera`): two cameras, two capture boards, the FPGA board
 // behind its PCI bridge, host memory, and the processor that runs `program`. The board key `pci.load` adds a
 // traffic generator. DeviceMap has the addresses of the devices. The core is at Fidelity::kCycle;
-// FastComputer is the computer at the others.
+// LoopComputer is the computer at the others.
 class Computer : public sc_core::sc_module, public ComputerView {
  public:
   // `program`, `left` and `right` outlive the computer. `fidelity`: one that steps cycles. Throws
@@ -57,11 +57,5 @@ class Computer : public sc_core::sc_module, public ComputerView {
 
   sc_core::sc_signal<bool> done_{"done"};
 };
-
-// A Computer if `fidelity` steps cycles, else one with the same behaviour and without most of the modules.
-std::unique_ptr<ComputerView> make_computer(const sc_core::sc_module_name& name, const BoardConfig& config,
-                                            std::uint64_t host_memory_bytes, host::Program& program,
-                                            capture::CameraSource& left, capture::CameraSource& right,
-                                            Binder& binder, fpga::Fidelity fidelity);
 
 }  // namespace stereotlm::platform

@@ -15,8 +15,7 @@
 
 namespace stereotlm::platform {
 
-// The controls of a computer's blocks: Computer has them in its modules, FastComputer and LoopComputer in a
-// loop.
+// The controls of a computer's blocks: Computer has them in its modules, LoopComputer in its loop.
 struct ComputerControls {
   pci::PciBusControl& pci_bus;                           // with its masters and targets
   pci::BridgeControl& bridge;                            // with its DMA channels
@@ -29,7 +28,7 @@ struct ComputerControls {
   ComputerCounters counters(BoardCounters board, std::uint64_t now_ps) const;
 };
 
-// What Computer, FastComputer and LoopComputer show of a run.
+// What Computer and LoopComputer show of a run.
 class ComputerView {
  public:
   virtual ~ComputerView() = default;

@@ -9,7 +9,7 @@
 #include "models/pci/pci_config.h"
 #include "platform/config/board_config.h"
 
-// The parts of a computer around the board, as Computer and FastComputer build them. Plain data.
+// The parts of a computer around the board, as Computer and ComputerLoop build them. Plain data.
 namespace stereotlm::platform {
 
 // Masters of the PCI bus: indices of its slots and of its statistics.

@@ -8,21 +8,31 @@
 #include "platform/config/device_map.h"
 
 namespace stereotlm::platform {
+namespace {
+
+struct EndsEarly {};
+
+}  // namespace
 
 LoopComputer::LoopComputer(const BoardConfig& config, std::uint64_t host_memory_bytes,
                            capture::CameraSource& left, capture::CameraSource& right, fpga::Fidelity fidelity)
     : host_memory_(host::kHostMemoryRule.required("host_memory_bytes", host_memory_bytes)),
       loop_(config, host_memory_.data(), host_memory_bytes, left, right, fidelity) {}
 
-void LoopComputer::run(host::Program& program, const std::function<void()>& between) {
-  between_ = between;
+void LoopComputer::run(host::Program& program, const std::function<bool()>& go_on) try {
+  go_on_ = go_on;
   program.run(*this);
+} catch (const EndsEarly& /*end*/) {
+  // as `go_on` wants it
 }
 
+// Steps the loop until the program sees something.
 void LoopComputer::step() {
-  constexpr std::uint64_t kMostPs = 10'000'000'000;
-  loop_.run(loop_.now_ps() + kMostPs);
-  between_();
+  constexpr std::uint64_t kPeriodPs = 10'000'000'000;
+  loop_.run(next_ps_);
+  if (loop_.now_ps() < next_ps_) return;
+  next_ps_ += kPeriodPs;
+  if (!go_on_()) throw EndsEarly();
 }
 
 void LoopComputer::end_burst(const pci::BurstResult& result) {
@@ -39,10 +49,10 @@ std::uint32_t LoopComputer::access(bool write, std::uint64_t address, std::uint3
     burst_has_ended_ = false;
     loop_.host_slot().request(*this, loop_.now_ps());
     while (!burst_has_ended_) step();
-    if (is_error(result_.end)) {
+    if (is_error(result_.end)) {  // in the words of host::Cpu
       throw host::BusError((write ? "write of " : "read of ") + hex(address) +
-                           (result_.end == pci::BurstEnd::kMasterAbort ? ": no target of the PCI bus takes it"
-                                                                       : ": the target refuses it"));
+                           (result_.end == pci::BurstEnd::kMasterAbort ? ": TLM_ADDRESS_ERROR_RESPONSE"
+                                                                       : ": TLM_GENERIC_ERROR_RESPONSE"));
     }
   } while (result_.words == 0);
   return word_.front();

@@ -15,8 +15,8 @@
 
 namespace stereotlm::platform {
 
-// The computer of FastComputer without the SystemC kernel: the accesses and the waits of the program step
-// ComputerLoop. A process can run any number of them, one after the other.
+// The computer of computer.h at fidelity fast or timing, without modules and without the SystemC kernel: the
+// accesses and the waits of the program step ComputerLoop. A process can run any number of them.
 class LoopComputer : public ComputerView, private host::HostBus, private pci::PciMasterIf {
  public:
   // `left` and `right` outlive the computer. Throws std::invalid_argument if the board has problems, or
@@ -24,9 +24,9 @@ class LoopComputer : public ComputerView, private host::HostBus, private pci::Pc
   LoopComputer(const BoardConfig& config, std::uint64_t host_memory_bytes, capture::CameraSource& left,
                capture::CameraSource& right, fpga::Fidelity fidelity);
 
-  // Runs the program from beginning to end. To be called once. `between` is called again and again, after 10
-  // ms of simulated time or less. Throws what the program, a camera source or `between` throws.
-  void run(host::Program& program, const std::function<void()>& between);
+  // Runs the program from beginning to end. To be called once. `go_on` is called every 10 ms of simulated
+  // time; the run ends early if it returns false. Throws what the program, a camera source or `go_on` throws.
+  void run(host::Program& program, const std::function<bool()>& go_on);
 
   std::uint64_t now_ps() const override { return loop_.now_ps(); }
   void catch_up() override { loop_.board().catch_up(loop_.now_ps()); }
@@ -48,7 +48,8 @@ class LoopComputer : public ComputerView, private host::HostBus, private pci::Pc
 
   memory::Ram host_memory_;
   ComputerLoop loop_;
-  std::function<void()> between_;
+  std::function<bool()> go_on_;
+  std::uint64_t next_ps_ = 0;        // when it is called next
   std::vector<std::uint32_t> word_;  // of the access
   pci::PciBurst burst_;
   pci::BurstResult result_;

@@ -92,9 +92,8 @@ bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::
   if (folder != nullptr) folder->append("rows.csv", stats::rows_csv_head(input.board));
   runs::ProgressLine progress(fmt::format("{} frames are simulated", input.frames),
                               runs::stepped_text(input.board, input.tables, input.camera));
-  while (!simulation.finished()) {
-    if (process::interrupted()) return false;
-    simulation.advance();
+  simulation.run([&] {
+    if (process::interrupted()) return simulation.end_early();
     progress.show(simulation.frames_done(), simulation.frames(), [&](double seconds) {
       return runs::progress_text(simulation.frames_done(), simulation.frames(), "frames simulated", seconds);
     });
@@ -103,7 +102,7 @@ bool simulate(runs::Simulation& simulation, const runs::RunInput& input, files::
       if (folder != nullptr) folder->append("rows.csv", stats::rows_csv(input.board, frames++, frame));
       report::add_frame(frame, sums);
     }
-  }
+  });
   return !process::interrupted();
 }
 

@@ -194,10 +194,10 @@ int rtl(const RtlOptions& options) {
   Binder binder;
   const auto simulation =
       runs::make_simulation(input.board, input.tables, pairs, {false, fpga::Fidelity::kFast, frames}, binder);
-  while (!simulation->finished()) {
-    simulation->advance();
-    if (process::interrupted()) return interrupted("nothing is written");
-  }
+  simulation->run([&] {
+    if (process::interrupted()) simulation->end_early();
+  });
+  if (process::interrupted()) return interrupted("nothing is written");
   for (const auto& [name, text] : rtl_files()) folder->add(std::string(name), text);
   folder->add("board.vh", parameters(input.board, frames));
   folder->add("cycles.hex", hex_lines(simulation->statistics().frame_cycles));

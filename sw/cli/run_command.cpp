@@ -53,7 +53,7 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
       fmt::format("{} frames are simulated", input.frames),
       input.fast ? runs::stepped_text(input.board, input.tables, input.camera) : "--fidelity cycle");
   bool ends_early = false;
-  while (!simulation->finished()) {
+  simulation->run([&] {
     if (process::interrupted() && !ends_early) {
       ends_early = true;
       simulation->end_early();
@@ -64,9 +64,8 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
                      "immediately, "
                      "without results");
       }
-      continue;
     }
-    for (const runs::Result& result : simulation->advance()) {
+    for (const runs::Result& result : simulation->take_results()) {
       runs::save_frame(input, result);
       if (verification != nullptr) verification->add(result);
     }
@@ -75,7 +74,7 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
                                   simulation->cycles_of_done(), simulation->cycles(), frame_cycles};
     progress.show(state.frames_done, state.frames,
                   [&state](double seconds) { return runs::progress_text(state, seconds); });
-  }
+  });
   records.finish(*simulation);
   Outcome outcome;
   outcome.frames_done = simulation->frames_done();

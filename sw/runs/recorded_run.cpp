@@ -100,14 +100,13 @@ void run_again(const RecordedRun& run, const process::Child::Tell& tell) {
   const auto simulation = make_simulation(input.board, input.tables, *input.pairs, input.mode(), binder);
   simulation->core().record_rows();
   std::deque<fpga::RowProfile> rows;  // rows of frames whose results are not delivered yet
-  while (!simulation->finished()) {
-    const std::vector<Result> results = simulation->advance();
+  simulation->run([&] {
     for (fpga::RowProfile& frame : simulation->core().take_rows()) rows.push_back(std::move(frame));
-    for (const Result& result : results) {
+    for (const Result& result : simulation->take_results()) {
       tell(message_of(result, rows.front()));
       rows.pop_front();
     }
-  }
+  });
   tell(kFigures + figures_of(simulation->statistics(), simulation->last(), input));
 }
 

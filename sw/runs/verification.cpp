@@ -51,9 +51,9 @@ void run_other(const RunInput& input, const process::Child::Tell& tell) {
   // Pairs of a client cannot be opened again; this process has a copy of them.
   const auto simulation =
       make_simulation(input.board, input.tables, pairs ? *pairs : *input.pairs, mode, binder);
-  while (!simulation->finished()) {
-    for (const Result& result : simulation->advance()) tell(line_of(result, !input.timing_only));
-  }
+  simulation->run([&] {
+    for (const Result& result : simulation->take_results()) tell(line_of(result, !input.timing_only));
+  });
   tell(stats_text(simulation->statistics()));
 }
 

@@ -223,7 +223,7 @@ void run_point(benchmark::State& state, const std::vector<std::string>& sets, bo
       const auto pairs = runs::blank_pairs(board);
       Binder binder;
       const auto run = runs::make_simulation(board, tables, *pairs, {camera, Fidelity::kTiming, 1}, binder);
-      while (!run->finished()) run->advance();
+      run->run([] {});
       tell(stats::stats_json(run->statistics(), std::nullopt));
     });
     while (child.next()) {

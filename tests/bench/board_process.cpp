@@ -1,6 +1,7 @@
 #include "tests/bench/board_process.h"
 
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -41,10 +42,7 @@ class SteppedBoard {
     if (fpga::steps_cycles(setting.fidelity)) sc_core::sc_start(sc_core::SC_ZERO_TIME);
   }
 
-  void run_frames(std::uint32_t frames) {
-    for (const std::uint64_t end = simulation_->frames_done() + frames; simulation_->frames_done() < end;)
-      simulation_->advance();
-  }
+  void run(const std::function<void()>& between) { simulation_->run(between); }
 
   // For a board without computer: a computer is seldom between two frames.
   BoardProcess::Count count() const {
@@ -66,6 +64,8 @@ class SteppedBoard {
   std::unique_ptr<runs::Simulation> simulation_;
 };
 
+struct NoMoreOrders {};
+
 // Sends the counts at the start and after each order, until the parent closes its end.
 void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, int orders,
            const process::Child::Tell& tell) {
@@ -77,15 +77,28 @@ void serve(const BoardProcess::Setting& setting, const host::StereoPair& pair, i
   BoardProcess::Count ready;
   ready.start_seconds = seconds_since(start);
   send(ready);
-  for (std::uint32_t frames = 0; process::read_all(orders, &frames, sizeof frames);) {
-    const auto begin = std::chrono::steady_clock::now();
-    board.run_frames(frames);
-    const double seconds = seconds_since(begin);
-    BoardProcess::Count count;
-    if (!setting.camera) count = board.count();
-    count.frames = board.frames();
-    count.seconds = seconds;
-    send(count);
+  std::uint64_t end = 0;  // frames with which the order is done
+  auto begin = start;     // of the order
+  const auto receive = [&] {
+    std::uint32_t frames = 0;
+    if (!process::read_all(orders, &frames, sizeof frames)) throw NoMoreOrders();
+    end = board.frames() + frames;
+    begin = std::chrono::steady_clock::now();
+  };
+  try {
+    receive();
+    board.run([&] {
+      if (board.frames() < end) return;
+      const double seconds = seconds_since(begin);
+      BoardProcess::Count count;
+      if (!setting.camera) count = board.count();
+      count.frames = board.frames();
+      count.seconds = seconds;
+      send(count);
+      receive();
+    });
+  } catch (const NoMoreOrders& /*end*/) {
+    // the parent has what it needs
   }
 }
 

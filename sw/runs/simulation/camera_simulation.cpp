@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "platform/assembly/computer.h"
-#include "platform/loop/loop_computer.h"
 
 namespace stereotlm::runs {
 namespace {
@@ -28,7 +27,7 @@ double stall_timeout_seconds(const platform::BoardConfig& board) {
 }  // namespace
 
 CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                                   host::FrameSource& pairs, std::uint64_t frames, Binder* binder,
+                                   host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
                                    fpga::Fidelity fidelity)
     : Simulation(board, tables, pairs, frames, fidelity),
       fidelity_(fidelity),
@@ -36,19 +35,24 @@ CameraSimulation::CameraSimulation(const platform::BoardConfig& board, const pla
               [this](const driver::DeliveredFrame& frame) { frame_delivered(frame); }),
       stall_timeout_seconds_(stall_timeout_seconds(board)) {
   const std::uint64_t bytes = driver::host_memory_bytes(board);
-  if (binder == nullptr) {
-    computer_ = std::make_unique<platform::LoopComputer>(board, bytes, left_, right_, fidelity);
+  if (fpga::steps_cycles(fidelity)) {
+    computer_ = std::make_unique<platform::Computer>("computer", board, bytes, driver_, left_, right_, binder,
+                                                     fidelity);
   } else {
-    computer_ = platform::make_computer("computer", board, bytes, driver_, left_, right_, *binder, fidelity);
+    auto loop = std::make_unique<platform::LoopComputer>(board, bytes, left_, right_, fidelity);
+    loop_ = loop.get();
+    computer_ = std::move(loop);
   }
 }
 
-std::vector<Result> CameraSimulation::run_through(const std::function<void()>& between) {
-  dynamic_cast<platform::LoopComputer&>(*computer_).run(driver_, [&] {
+void CameraSimulation::run(const std::function<void()>& between) {
+  if (loop_ == nullptr) return Simulation::run(between);
+  loop_->run(driver_, [&] {
     if (!finished()) check_progress();
     between();
+    return !finished();
   });
-  return take_results();
+  between();
 }
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {

@@ -11,6 +11,7 @@
 #include "models/capture/camera.h"
 #include "platform/assembly/computer_view.h"
 #include "platform/figures/collect.h"
+#include "platform/loop/loop_computer.h"
 #include "platform/records/bus_trace.h"
 #include "platform/records/timeline.h"
 #include "sw/driver/stereo_driver.h"
@@ -22,26 +23,19 @@ namespace stereotlm::runs {
 // that ends early still finishes and delivers the frames that the core has begun.
 class CameraSimulation : public Simulation {
  public:
-  // The referenced arguments outlive the simulation; `binder` binds its sockets. Throws std::exception if the
-  // computer cannot be built.
+  // The referenced arguments outlive the simulation. Throws std::exception if the computer cannot be built.
+  // `binder` binds its sockets: at fidelity fast and timing it has none, and needs no SystemC kernel. Then a
+  // process can run any number of simulations, one after the other.
   CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
                    host::FrameSource& pairs, std::uint64_t frames, Binder& binder,
-                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle)
-      : CameraSimulation(board, tables, pairs, frames, &binder, fidelity) {}
-  // The same without the SystemC kernel, at fidelity fast or timing. A process can run any number of them,
-  // one after the other. run_through() takes the place of advance().
-  CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                   host::FrameSource& pairs, std::uint64_t frames, fpga::Fidelity fidelity)
-      : CameraSimulation(board, tables, pairs, frames, nullptr, fidelity) {}
+                   fpga::Fidelity fidelity = fpga::Fidelity::kCycle);
 
-  // Simulates all frames, and returns their results. `between` is called after 10 ms of simulated time or
-  // less, again and again. It may throw, which ends the simulation, or call end_early().
-  std::vector<Result> run_through(const std::function<void()>& between);
+  void run(const std::function<void()>& between) override;
 
-  // Records the run from its beginning, for take_timeline(). To be called before advance(). statistics() then
+  // Records the run from its beginning, for take_timeline(). To be called before run(). statistics() then
   // also checks the identities of the records.
   void record_timeline();
-  // See ComputerView. To be called before advance().
+  // See ComputerView. To be called before run().
   void trace_buses(platform::BusTrace& buses) override { computer_->trace_buses(buses); }
 
   void end_early() override;
@@ -51,9 +45,6 @@ class CameraSimulation : public Simulation {
   platform::ComputerView& computer() { return *computer_; }
 
  private:
-  CameraSimulation(const platform::BoardConfig& board, const platform::Tables& tables,
-                   host::FrameSource& pairs, std::uint64_t frames, Binder* binder, fpga::Fidelity fidelity);
-
   // The scene in front of one camera.
   class View : public capture::CameraSource {
    public:
@@ -76,6 +67,7 @@ class CameraSimulation : public Simulation {
   View right_{*this, &host::StereoPair::right};
   driver::StereoDriver driver_;
   std::unique_ptr<platform::ComputerView> computer_;
+  platform::LoopComputer* loop_ = nullptr;  // the computer, if it is one
   const host::StereoPair* pair_ = nullptr;  // pair of the last captured frame
   // Start time of each captured camera frame that is not delivered yet, by its number.
   std::map<std::uint64_t, std::uint64_t> begins_ps_;

@@ -71,9 +71,10 @@ Json simulate_computer(const explore::Point& point, const platform::Tables& tabl
   const platform::BoardConfig& board = *point.board;
   const std::uint64_t frames = point.run.frames;
   const auto pairs = blank_pairs(board);
-  CameraSimulation simulation(board, tables, *pairs, frames, fpga::Fidelity::kTiming);
+  Binder binder;
+  CameraSimulation simulation(board, tables, *pairs, frames, binder, fpga::Fidelity::kTiming);
   if (with_core_waits) simulation.record_timeline();
-  simulation.run_through([] {
+  simulation.run([] {
     if (process::interrupted()) throw explore::GivenUp();
   });
   double whole_ps = 0;
@@ -114,10 +115,10 @@ PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tab
     const auto simulation =
         make_simulation(board, tables, pairs, {false, fpga::Fidelity::kFast, frames}, binder);
     std::string pixels;
-    while (!simulation->finished()) {
-      for (const Result& result : simulation->advance())
+    simulation->run([&] {
+      for (const Result& result : simulation->take_results())
         pixels.append(result.disparity.pixels.begin(), result.disparity.pixels.end());
-    }
+    });
     const platform::Statistics statistics = simulation->statistics();
     check(statistics);
     const auto& cycles = statistics.frame_cycles;

@@ -16,8 +16,8 @@
 namespace stereotlm::runs {
 namespace {
 
-// FPGA cycles that one advance() simulates. They take some ms of wall time; at fidelity fast, the pixels of a
-// frame that begins in these cycles take additional time.
+// FPGA cycles of the kernel between two calls of `between`. They take some ms of wall time; at fidelity fast,
+// the pixels of a frame that begins in these cycles take additional time.
 constexpr double kSliceCycles = 40'000;
 constexpr double kFastSliceCycles = 2'000'000;
 
@@ -56,7 +56,7 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
     counters_ = platform::counters_of(system_.board);
     add_result({frame, disparity});
   }
-  // Lets a frame that is fast-forwarded pass with the time, so that advance() returns within it.
+  // Lets a frame that is fast-forwarded pass with the time, so that `between` is called within it.
   void check_progress() override { system_.board.core.catch_up(); }
 
   platform::PreloadedSystem system_;
@@ -75,20 +75,22 @@ Simulation::Simulation(const platform::BoardConfig& board, const platform::Table
 
 std::uint64_t Simulation::now_ps() const { return kernel_time::now_ps(); }
 
-std::vector<Result> Simulation::advance() {
-  try {
-    sc_core::sc_start(slice_cycles_ / board_.fpga.clock_mhz, sc_core::SC_US);
-  } catch (const sc_core::sc_report&) {
-    if (failure_) std::rethrow_exception(failure_);  // SystemC has replaced it by a report
-    throw;
+void Simulation::run(const std::function<void()>& between) {
+  while (!finished()) {
+    try {
+      sc_core::sc_start(slice_cycles_ / board_.fpga.clock_mhz, sc_core::SC_US);
+    } catch (const sc_core::sc_report&) {
+      if (failure_) std::rethrow_exception(failure_);  // SystemC has replaced it by a report
+      throw;
+    }
+    if (!finished() && !sc_core::sc_pending_activity()) {
+      throw std::runtime_error(
+          fmt::format("the simulation has ended after {} frames: no event is left that could finish the next",
+                      frames_done()));
+    }
+    if (!finished()) check_progress();
+    between();
   }
-  if (!finished() && !sc_core::sc_pending_activity()) {
-    throw std::runtime_error(
-        fmt::format("the simulation has ended after {} frames: no event is left that could finish the next",
-                    frames_done()));
-  }
-  if (!finished()) check_progress();
-  return take_results();
 }
 
 std::vector<Result> Simulation::take_results() {

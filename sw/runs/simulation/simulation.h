@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,19 +35,22 @@ struct Result {
   std::uint64_t time_ps = 0;  // time of its delivery
 };
 
-// Simulates a board and its surroundings on the pairs of a source until `frames` results are delivered. One
-// object per process: SystemC elaborates once.
+// Simulates a board and its surroundings on the pairs of a source until `frames` results are delivered. Of
+// those of the SystemC kernel, one object per process: it elaborates once.
 class Simulation : private fpga::CycleObserver, private platform::BusObserver {
  public:
   ~Simulation() override = default;
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Simulates for some ms of wall time and returns the new results in order. At fidelity fast, a call may
-  // also compute the pixels of a whole frame. Throws sc_core::sc_report if a model reports an error, the
-  // exception of the source if it cannot load a pair, and std::runtime_error if the simulation runs out of
-  // events or stalls before the last frame is finished.
-  std::vector<Result> advance();
+  // Simulates all frames. `between` is called again and again, after some ms of wall time, and at the end; at
+  // fidelity fast, the pixels of a whole frame may also lie between two calls. It may call end_early(). Throws
+  // what `between` throws, sc_core::sc_report if a model reports an error, the exception of the source if it
+  // cannot load a pair, and std::runtime_error if the simulation runs out of events or stalls before the last
+  // frame is finished.
+  virtual void run(const std::function<void()>& between);
+  // The results since the last call, in order.
+  std::vector<Result> take_results();
 
   // Reduces the run to the frames that are finished or have already changed the counters. The results then
   // equal the results of a complete run with fewer frames.
@@ -63,11 +67,11 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   virtual fpga::FrameRun& core() = 0;
 
   // If the run is recorded, the records since the last call; after the last frame, up to the end of the run.
-  // To be called regularly, because they fill memory, and before statistics(). A board alone has none.
+  // To be called in `between`, because they fill memory, and before statistics(). A board alone has none.
   virtual platform::TimelineRecords take_timeline() { return {}; }
 
   // Records where and when the ports of the core stall, in its first `frames` frames. To be called before
-  // advance(). A board alone then finishes its running frame when it ends early. If all frames are recorded,
+  // run(). A board alone then finishes its running frame when it ends early. If all frames are recorded,
   // statistics() also checks the identities of the records.
   void record_conflicts(std::uint64_t frames = kAllFrames);
   // The frames of the core that have ended since the last call. To be called as take_timeline().
@@ -76,8 +80,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   const fpga::ConflictRecorder* conflicts() const { return conflicts_ ? &conflicts_->recorder() : nullptr; }
 
   // Reports to the observers what the core does in the window, and what the buses and queues of a computer do
-  // in it. To be called after record_conflicts(), before advance(). The observers outlive the simulation. An
-  // exception of an observer ends the simulation, and advance() throws it.
+  // in it. To be called after record_conflicts(), before run(). The observers outlive the simulation. An
+  // exception of an observer ends the simulation, and run() throws it.
   void trace(const fpga::CycleWindow& window, fpga::CycleObserver& cycles, platform::BusObserver& buses);
 
   // The figures of the finished frames. May be called only while no frame runs that end_early() would let
@@ -94,8 +98,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   const platform::Tables& tables() const { return tables_; }
   void set_frames(std::uint64_t frames) { frames_ = frames; }
   virtual std::uint64_t now_ps() const;  // the simulated time
-  // Loads a pair, within a SystemC process. An exception of the source ends that process, and advance()
-  // throws it.
+  // Loads a pair. An exception of the source ends the simulation, and run() throws it.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
   fpga::ConflictRecorder* recorder() { return conflicts_ ? &conflicts_->recorder() : nullptr; }
@@ -103,9 +106,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   void check_conflicts(platform::Statistics& statistics) const;
   // Hands what the buses do to the trace. A board alone has none.
   virtual void trace_buses(platform::BusTrace& /*buses*/) {}
-  // The results since the last call.
-  std::vector<Result> take_results();
-  // Called by advance(). Throws std::runtime_error if the simulation has stalled.
+  // Called again and again. Throws std::runtime_error if the simulation has stalled.
   virtual void check_progress() {}
 
  private:
@@ -118,7 +119,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   void level(const platform::QueueLevel& level) override {
     keep_failure([&] { bus_observer_->level(level); });
   }
-  // Calls `action` within a SystemC process. The kernel replaces its exception by a report.
+  // Calls `action`. Within a SystemC process, the kernel replaces its exception by a report.
   template <typename Action>
   void keep_failure(const Action& action) {
     try {

@@ -28,7 +28,7 @@ using ::testing::StartsWith;
 class CollectComputer : public testing::Test {
  protected:
   CollectComputer() {
-    while (!simulation.finished()) simulation.advance();
+    simulation.run([] {});
     // The core is idle: as many frames as deliveries.
     counters = simulation.computer().counters();
   }

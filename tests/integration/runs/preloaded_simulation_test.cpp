@@ -20,9 +20,9 @@ class PreloadedSimulationTest : public testing::Test {
   void build(std::uint64_t frames = 10, fpga::Fidelity fidelity = fpga::Fidelity::kCycle) {
     simulation = runs::make_simulation(board, tables, pairs, {false, fidelity, frames}, binder);
   }
-  std::string message_of_advancing() {
+  std::string message_of_running() {
     try {
-      simulation->advance();
+      simulation->run([] {});
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -43,23 +43,26 @@ TEST_F(PreloadedSimulationTest, AdvancesInSlicesUntilTheLastFrame) {
   EXPECT_EQ(simulation->statistics().frames, 0U);
   EXPECT_TRUE(simulation->statistics().failed.empty());
 
-  std::vector<runs::Result> results = simulation->advance();
+  std::vector<runs::Result> results;
+  std::vector<std::uint64_t> done;  // after each slice
+  simulation->run([&] {
+    for (runs::Result& result : simulation->take_results()) results.push_back(std::move(result));
+    done.push_back(simulation->frames_done());
+    EXPECT_EQ(results.size(), done.back());
+    if (done.size() != 1) return;
+    // The seventh frame is under way and is not in the figures.
+    const platform::Statistics statistics = simulation->statistics();
+    EXPECT_EQ(statistics.frame_cycles, std::vector<std::uint64_t>(6, 5992));
+    EXPECT_EQ(statistics.cycles, 6U * (5992 - 16));
+    EXPECT_EQ(statistics.banks.at(4).writes + statistics.banks.at(5).writes, 6U * 32 * 24 / 4);
+    EXPECT_EQ(statistics.failed, std::vector<std::string>{});
+    EXPECT_EQ(simulation->cycles_of_done(), 6U * 5992);
+    EXPECT_GE(simulation->cycles(), 40'000U);
+    EXPECT_FALSE(simulation->finished());
+  });
   // A frame has 5992 cycles, a slice 40,000.
-  EXPECT_EQ(results.size(), 6U);
-  EXPECT_EQ(simulation->frames_done(), 6U);
-  // The seventh frame is under way and is not in the figures.
-  const platform::Statistics statistics = simulation->statistics();
-  EXPECT_EQ(statistics.frame_cycles, std::vector<std::uint64_t>(6, 5992));
-  EXPECT_EQ(statistics.cycles, 6U * (5992 - 16));
-  EXPECT_EQ(statistics.banks.at(4).writes + statistics.banks.at(5).writes, 6U * 32 * 24 / 4);
-  EXPECT_EQ(statistics.failed, std::vector<std::string>{});
-  EXPECT_EQ(simulation->cycles_of_done(), 6U * 5992);
-  EXPECT_GE(simulation->cycles(), 40'000U);
-  EXPECT_FALSE(simulation->finished());
-
-  for (runs::Result& result : simulation->advance()) results.push_back(std::move(result));
+  EXPECT_EQ(done, (std::vector<std::uint64_t>{6, 10}));
   EXPECT_TRUE(simulation->finished());
-  EXPECT_EQ(simulation->frames_done(), 10U);
   ASSERT_EQ(results.size(), 10U);
   for (std::uint64_t frame = 0; frame < 10; ++frame) {
     EXPECT_EQ(results[frame].number, frame);
@@ -91,7 +94,7 @@ TEST_F(PreloadedSimulationTest, ComputesALongFrameInManySlicesAtFidelityFast) {
   simulation->record_conflicts();
   TimeOfWindow observer(*simulation);
   simulation->trace({{}, fpga::CycleWindow::Unit::kCycles, 20'000'000, 20'000'000}, observer, observer);
-  while (!simulation->finished()) simulation->advance();
+  simulation->run([] {});
   EXPECT_GT(simulation->statistics().frame_cycles.at(0), 30'000'000U);
   ASSERT_TRUE(observer.cycles);
   EXPECT_LE(*observer.cycles, 22'000'000U);
@@ -99,8 +102,7 @@ TEST_F(PreloadedSimulationTest, ComputesALongFrameInManySlicesAtFidelityFast) {
 
 TEST_F(PreloadedSimulationTest, AbandonsTheFrameUnderWayToEndEarly) {
   build();
-  simulation->advance();
-  simulation->end_early();
+  simulation->run([&] { simulation->end_early(); });
   EXPECT_TRUE(simulation->finished());
   EXPECT_EQ(simulation->frames(), 6U);
   EXPECT_EQ(simulation->statistics().frames, 6U);
@@ -110,7 +112,7 @@ TEST_F(PreloadedSimulationTest, PassesOnWhatTheSourceThrows) {
   pairs.failing_frame = 3;
   build();
   const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
-  EXPECT_EQ(message_of_advancing(), "the disk is gone");
+  EXPECT_EQ(message_of_running(), "the disk is gone");
   EXPECT_EQ(simulation->frames_done(), 3U);
 }
 
@@ -118,19 +120,24 @@ TEST_F(PreloadedSimulationTest, PassesOnWhatAModelReports) {
   pairs.set_right_size(28, 24);
   build(1);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
-  EXPECT_THROW(simulation->advance(), sc_core::sc_report);
+  EXPECT_THROW(simulation->run([] {}), sc_core::sc_report);
 }
 
 TEST_F(PreloadedSimulationTest, ReportsARunThatStopsBeforeTheLastFrame) {
   build();
-  simulation->advance();
-  ASSERT_EQ(simulation->frames_done(), 6U);
   // The error is not thrown, so the host stops.
   sc_core::sc_report_handler::set_actions("/stereotlm/ideal_host", sc_core::SC_ERROR, sc_core::SC_DO_NOTHING);
   const test::ExpectedReport expected("/stereotlm/ideal_host");
-  pairs.set_right_size(28, 24);
-  EXPECT_EQ(message_of_advancing(),
-            "the simulation has ended after 7 frames: no event is left that could finish the next");
+  std::string message;
+  try {
+    simulation->run([&] {
+      ASSERT_EQ(simulation->frames_done(), 6U);
+      pairs.set_right_size(28, 24);
+    });
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  EXPECT_EQ(message, "the simulation has ended after 7 frames: no event is left that could finish the next");
 }
 
 }  // namespace

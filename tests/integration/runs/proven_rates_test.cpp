@@ -74,12 +74,12 @@ std::string problems_of(const BoardConfig& board, std::uint64_t frames, bool& is
   const auto run = [&](std::uint64_t count, std::vector<runs::Result>& results) {
     test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
     runs::CameraSimulation simulation(board, tables, *pictures, count, binder, fpga::Fidelity::kTiming);
-    while (!simulation.finished()) {
-      for (runs::Result& result : simulation.advance()) {
+    simulation.run([&] {
+      for (runs::Result& result : simulation.take_results()) {
         result.disparity = {};
         results.push_back(std::move(result));
       }
-    }
+    });
     return simulation.statistics();
   };
   // The first frames are those of a short run. So one run has both.

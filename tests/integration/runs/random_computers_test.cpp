@@ -66,12 +66,12 @@ Outcome simulate(const platform::BoardConfig& board, const platform::Tables& tab
   simulation.core().record_rows();
   simulation.record_timeline();
   Outcome outcome;
-  while (!simulation.finished()) {
-    for (runs::Result& result : simulation.advance()) outcome.results.push_back(std::move(result));
+  simulation.run([&] {
+    for (runs::Result& result : simulation.take_results()) outcome.results.push_back(std::move(result));
     const platform::TimelineRecords records = simulation.take_timeline();
     outcome.timeline += stats::timeline_csv(records.events);
     outcome.latencies += stats::latency_csv(records.latencies);
-  }
+  });
   outcome.rows = simulation.core().take_rows();
   outcome.statistics = simulation.statistics();
   return outcome;
@@ -346,11 +346,10 @@ std::string conflicts_that_differ(std::uint64_t seed, const test::RandomKnobs& k
     simulation.record_conflicts();
     std::string rows = stats::rows_csv_head(board);
     std::uint64_t frames = 0;
-    while (!simulation.finished()) {
-      simulation.advance();
+    simulation.run([&] {
       for (const fpga::FrameConflicts& frame : simulation.take_conflicts())
         rows += stats::rows_csv(board, frames++, frame);
-    }
+    });
     std::string text = test::differing_lines(test::plain_rows_csv(input.board.core, core.strips), rows);
     text += test::differing_lines(test::plain_conflicts_csv(input.board.core, core.tiles),
                                   stats::conflicts_csv(board, *simulation.conflicts()));
@@ -379,7 +378,7 @@ std::string steady_problems(std::uint64_t seed) {
     Pictures pictures(computer.board);
     test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
     runs::CameraSimulation simulation(board, tables, pictures, frames, binder, Fidelity::kTiming);
-    while (!simulation.finished()) simulation.advance();
+    simulation.run([] {});
     return simulation.statistics();
   };
   constexpr std::uint64_t kMany = 400;

@@ -335,8 +335,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
   else if (!window.frame)
     range = {clock.edge_ps(window.first), clock.edge_ps(window.last + 1)};
   Traced traced;
-  while (!simulation->finished()) {
-    simulation->advance();
+  simulation->run([&] {
     for (const fpga::FrameConflicts& frame : simulation->take_conflicts()) {
       traced.runs.push_back(platform::frame_runs(frame));
       writer.frame(traced.runs.back());
@@ -348,7 +347,7 @@ Traced trace(const Case& of, Fidelity fidelity, const CycleWindow& window, bool 
       if (event.what == std::string("strobe")) range.begin_ps = event.begin_ps;
       range.end_ps = event.end_ps;
     }
-  }
+  });
   writer.complete();
   writer.commit();
   traced.cycles = std::move(cycles.cycles);

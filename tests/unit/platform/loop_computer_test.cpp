@@ -1,6 +1,5 @@
-// FastComputer beside Computer, with the same program: every access and every interrupt at the same time. One
-// computer in a process.
-#include "platform/loop/fast_computer.h"
+// LoopComputer beside Computer, with the same program: every access and every interrupt at the same time.
+#include "platform/loop/loop_computer.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "models/kernel_time.h"
-#include "models/testing/expected_report.h"
 #include "models/testing/monitoring_binder.h"
 #include "platform/assembly/computer.h"
 #include "tests/support/fork.h"
@@ -56,7 +53,7 @@ class CountedPictures : public capture::CameraSource {
 // What the program did, one line for each access: its time and its result.
 class LoggedBus {
  public:
-  explicit LoggedBus(host::HostBus& bus) : bus_(bus) {}
+  LoggedBus(host::HostBus& bus, const ComputerView& computer) : bus_(bus), computer_(computer) {}
   // `is_known`: not a word of a bank, which may differ at Fidelity::kTiming.
   std::uint32_t read(std::uint64_t address, bool is_known = true) {
     std::uint32_t value = 0;
@@ -72,7 +69,7 @@ class LoggedBus {
     line("interrupt");
   }
   std::uint8_t* memory(std::uint64_t bytes) { return bus_.memory(kDevices.host_memory, bytes); }
-  void line(const std::string& what) { text_ += '\n' + std::to_string(kernel_time::now_ps()) + " " + what; }
+  void line(const std::string& what) { text_ += '\n' + std::to_string(computer_.now_ps()) + " " + what; }
   const std::string& text() const { return text_; }
 
  private:
@@ -87,21 +84,8 @@ class LoggedBus {
   }
 
   host::HostBus& bus_;
+  const ComputerView& computer_;
   std::string text_;
-};
-
-class ScriptedProgram : public host::Program {
- public:
-  explicit ScriptedProgram(std::function<void(LoggedBus&)> script) : script_(std::move(script)) {}
-  void run(host::HostBus& bus) override {
-    LoggedBus logged(bus);
-    script_(logged);
-    text = logged.text();
-  }
-  std::string text;
-
- private:
-  std::function<void(LoggedBus&)> script_;
 };
 
 BoardConfig fast_cameras() {
@@ -111,40 +95,48 @@ BoardConfig fast_cameras() {
 }
 
 // A computer with its program.
-struct RunningComputer {
-  RunningComputer(Fidelity fidelity, std::function<void(LoggedBus&)> script,
+struct RunningComputer : host::Program {
+  RunningComputer(Fidelity fidelity, std::function<void(LoggedBus&)> its_script,
                   const BoardConfig& board = fast_cameras())
-      : program(std::move(script)),
-        computer(make_computer("computer", board, kMemoryBytes, program, left, right, binder, fidelity)) {}
-  bool finished() const {
-    if (const auto* fast = dynamic_cast<const FastComputer*>(computer.get())) return fast->cpu.finished();
-    return dynamic_cast<const Computer&>(*computer).cpu.finished();
+      : script(std::move(its_script)) {
+    if (fidelity == Fidelity::kCycle) {
+      modules = std::make_unique<Computer>("computer", board, kMemoryBytes, *this, left, right, binder);
+    } else {
+      loop = std::make_unique<LoopComputer>(board, kMemoryBytes, left, right, fidelity);
+    }
   }
+  ComputerView& computer() { return modules ? static_cast<ComputerView&>(*modules) : *loop; }
+  // Runs the program to its end, but for 1 s of simulated time at most.
   void finish() {
-    for (int ms = 0; ms < 1000 && !finished(); ++ms) sc_core::sc_start(1, sc_core::SC_MS);
-    EXPECT_TRUE(finished());
+    if (loop) loop->run(*this, [this] { return loop->now_ps() < 1'000'000'000'000; });
+    for (int ms = 0; modules && ms < 1000 && !has_ended; ++ms) sc_core::sc_start(1, sc_core::SC_MS);
+    EXPECT_TRUE(has_ended);
   }
 
-  ScriptedProgram program;
+  void run(host::HostBus& bus) override {
+    LoggedBus logged(bus, computer());
+    script(logged);
+    text = logged.text();
+    has_ended = true;
+  }
+
+  std::function<void(LoggedBus&)> script;
+  std::string text;  // of the program
+  bool has_ended = false;
   CountedPictures left;
   CountedPictures right;
   test::MonitoringBinder binder{{true, true, true, false}};  // ends in the middle of its traffic
-  std::unique_ptr<ComputerView> computer;
+  std::unique_ptr<Computer> modules;
+  std::unique_ptr<LoopComputer> loop;
 };
 
-// `beside_others`: another process has events of its own between those of the computer.
-std::string log_of(Fidelity fidelity, const std::function<void(LoggedBus&)>& script, const BoardConfig& board,
-                   bool beside_others = false) {
+std::string log_of(Fidelity fidelity, const std::function<void(LoggedBus&)>& script,
+                   const BoardConfig& board) {
   return test::run_for_text([&] {
     RunningComputer running(fidelity, script, board);
-    if (beside_others) {
-      sc_core::sc_spawn([] {
-        for (;;) sc_core::wait(777, sc_core::SC_PS);
-      });
-    }
     running.finish();
-    const ComputerCounters counters = running.computer->counters();
-    std::string text = running.program.text + "\nerrors: " + std::to_string(counters.bridge.errors) + " " +
+    const ComputerCounters counters = running.computer().counters();
+    std::string text = running.text + "\nerrors: " + std::to_string(counters.bridge.errors) + " " +
                        std::to_string(counters.local_bus.errors);
     for (const ComputerCounters::Camera& camera : counters.cameras)
       text += " " + std::to_string(camera.capture.refused_accesses);
@@ -172,6 +164,7 @@ class RandomProgram {
     begin(bus);
     for (int action = 0; action < 60; ++action) act(bus, random_.between(0, 8));
     while (expected_ != 0) handle_interrupt(bus);
+    bus.read(kWindow, false);  // once the posted writes have reached the board, and are counted
     const std::uint8_t* const memory = bus.memory(kMemoryBytes);
     if (!only_times) bus.line("memory " + ::testing::PrintToString(std::vector<int>(memory, memory + 4096)));
   }
@@ -287,7 +280,7 @@ class RandomProgram {
   unsigned expected_ = 0;  // interrupts that are to come
 };
 
-TEST(FastComputer, EndsEachAccessAndRaisesEachInterruptAtTheTimesOfComputer) {
+TEST(LoopComputer, EndsEachAccessAndRaisesEachInterruptAtTheTimesOfComputer) {
   sc_core::sc_report_handler::set_actions("/stereotlm/refused_access", sc_core::SC_DO_NOTHING);
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     BoardConfig board = fast_cameras();
@@ -298,36 +291,37 @@ TEST(FastComputer, EndsEachAccessAndRaisesEachInterruptAtTheTimesOfComputer) {
     const std::string expected = log_of(Fidelity::kCycle, program, board);
     EXPECT_GT(expected.size(), 5000U);
     EXPECT_NE(expected.find("refused"), std::string::npos);
-    EXPECT_EQ(log_of(Fidelity::kFast, program, board, seed == 0), expected) << seed;
+    EXPECT_EQ(log_of(Fidelity::kFast, program, board), expected) << seed;
     program.only_times = true;
     EXPECT_EQ(log_of(Fidelity::kTiming, program, board), log_of(Fidelity::kCycle, program, board)) << seed;
   }
 }
 
-// Errors end the simulation with a report of the kernel.
-class FastComputerErrors : public ::testing::Test {
+class LoopComputerErrors : public ::testing::Test {
  protected:
-  using Script = std::function<void(LoggedBus&)>;
-  // The report of a computer whose program is `script` and which `change` has changed. In a child, because
-  // the kernel does not unwind the stack of the program.
-  static std::string report(
-      Fidelity fidelity, const Script& script,
+  // What the run of a computer throws whose program is `script`, and which `change` has changed.
+  static std::string message(
+      Fidelity fidelity, const std::function<void(LoggedBus&)>& script,
       const std::function<void(RunningComputer&)>& change = [](auto&) {}) {
-    return test::run_for_text([&] {
-      RunningComputer running(fidelity, script);
-      change(running);
-      const test::ExpectedReport expected(sc_core::SC_ID_SIMULATION_UNCAUGHT_EXCEPTION_);
-      EXPECT_THROW(sc_core::sc_start(20, sc_core::SC_MS), sc_core::sc_report);
-      EXPECT_FALSE(running.finished());
-      return expected.text();
-    });
+    RunningComputer running(fidelity, script);
+    change(running);
+    try {
+      running.finish();
+    } catch (const std::exception& error) {
+      EXPECT_FALSE(running.has_ended);
+      return error.what();
+    }
+    return "";
   }
   static void start_core(LoggedBus& bus, std::uint32_t disparity_bank) {
     write_bases(bus, {0, 1, disparity_bank, 2, 3});
     bus.write(core_register(core::kControl), core::kControlStart);
   }
   static void wait_forever(LoggedBus& bus) {
-    for (;;) bus.wait_for_interrupt();
+    for (;;) {
+      bus.wait_for_interrupt();
+      bus.read(kDevices.bridge_registers + bridge::kPage);
+    }
   }
   static void capture(LoggedBus& bus) {
     for (const std::uint64_t board : kCaptures)
@@ -336,30 +330,49 @@ class FastComputerErrors : public ::testing::Test {
   }
 };
 
-TEST_F(FastComputerErrors, ReachTheReport) {
-  const auto expect = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  };
-  expect(report(Fidelity::kFast,
-                [](LoggedBus& bus) {
-                  start_core(bus, 0);  // over the left image
-                  wait_forever(bus);
-                }),
-         "core: a frame that does not work directly on memory needs fidelity cycle");
-  expect(
-      report(Fidelity::kTiming,
-             [](LoggedBus& bus) {
-               bus.write(testing::page_register(3), core::base(4, 5));
-               start_core(bus, 4);
-               bus.write(kWindow, 0);
-               wait_forever(bus);
-             }),
-      "writes words 5..5 of bank number 4, where the running frame has its disparity: needs fidelity cycle");
-  expect(report(Fidelity::kFast, capture, [](RunningComputer& running) { running.right.fails = true; }),
-         "the disk is gone");
-  expect(
-      report(Fidelity::kFast, capture, [](RunningComputer& running) { running.left = CountedPictures(5); }),
+TEST_F(LoopComputerErrors, AreThrown) {
+  EXPECT_EQ(message(Fidelity::kFast,
+                    [](LoggedBus& bus) {
+                      start_core(bus, 0);  // over the left image
+                      wait_forever(bus);
+                    }),
+            "core: a frame that does not work directly on memory needs fidelity cycle");
+  EXPECT_EQ(
+      message(Fidelity::kTiming,
+              [](LoggedBus& bus) {
+                bus.write(testing::page_register(3), core::base(4, 5));
+                start_core(bus, 4);
+                bus.write(kWindow, 0);
+                wait_forever(bus);
+              }),
+      "core: a burst of the local bus writes words 5..5 of bank number 4, where the running frame has its "
+      "disparity: needs fidelity cycle");
+  EXPECT_EQ(message(Fidelity::kFast, capture, [](RunningComputer& running) { running.right.fails = true; }),
+            "the disk is gone");
+  EXPECT_EQ(
+      message(Fidelity::kFast, capture, [](RunningComputer& running) { running.left = CountedPictures(5); }),
       "picture of frame 1 = 16 x 5: must be 16 x 6");
+}
+
+TEST_F(LoopComputerErrors, OfTheProgramAreThrown) {
+  EXPECT_EQ(message(Fidelity::kFast,
+                    [](LoggedBus& bus) {
+                      bus.write(kDevices.bridge_registers + bridge::kInterruptEnable, bridge::kAllInterrupts);
+                      start_core(bus, 4);
+                      for (;;) bus.wait_for_interrupt();
+                    }),
+            "wait_for_interrupt: the line is still asserted, and no register was accessed since it returned "
+            "last");
+  EXPECT_EQ(message(Fidelity::kFast, [](LoggedBus& bus) { bus.memory(kMemoryBytes + 1); }),
+            "65537 bytes at 0x0: must be host memory");
+}
+
+TEST_F(LoopComputerErrors, EndsEarly) {
+  RunningComputer running(Fidelity::kTiming, wait_forever);
+  int calls = 0;
+  running.loop->run(running, [&calls] { return ++calls < 4; });
+  EXPECT_FALSE(running.has_ended);
+  EXPECT_EQ(running.loop->now_ps(), 30'000'000'000U);
 }
 
 }  // namespace
