@@ -140,10 +140,18 @@ std::optional<Times> most_times(const BoardConfig& board, bool meets_host, doubl
     if (!is_fixed) grant += static_cast<double>(core_ports(board).core_size()) * (1 + turnaround);
   }
   const bool in_step = Clock(board.bridge.local_clock_mhz).divides(Clock(board.fpga.clock_mhz));
-  const double word =
-      in_step ? local + grant * fpga + (grant > 0 ? local : 0) : 2 * local + (1 + grant) * fpga;
-  const double posted_word = 3 * local + word;
-  const double dma = 5 * local + latency * fpga + burst * word;
+  const double ratio = board.bridge.local_clock_mhz / board.fpga.clock_mhz;  // local clocks of a cycle
+  const auto up = [](double number) { return std::ceil(number - 1e-9); };    // 1e-9: of the division
+  const auto by_requests = [&](double waits) {
+    return local * (1 + up((waits + (in_step ? 0 : 1)) * ratio));
+  };
+  const double later = meets_host || of_sdram > 0 ? grant : 0;  // cycles that a word after the first waits
+  const auto words_time = [&](double count) {
+    const double by_grants = 2 * local + (1 + grant) * fpga + (count - 1) * (up(2 / ratio) + later) * fpga;
+    return std::min(by_requests(grant) + (count - 1) * by_requests(later), by_grants);
+  };
+  const double posted_word = 3 * local + words_time(1);
+  const double dma = 5 * local + latency * fpga + words_time(burst);
   const double drain = dma + (posted + 5) * posted_word + 2 * local + fpga;
 
   // The PCI bus.

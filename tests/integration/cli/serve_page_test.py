@@ -358,6 +358,17 @@ class Ask(LiveTest):
         self.assertEqual(self.address(), "#board=fpl2003&matcher.rows=2")
         self.assertAlmostEqual(self.value("preloaded"), rate, 2)
 
+    def test_gains_end_with_a_change_of_the_board(self):
+        self.opened()
+        self.browser.choose("view", "camera")
+        self.browser.click("#explain")
+        self.browser.until("return document.querySelector('#gains progress')", 20)
+        self.set("matcher.rows", "2")
+        self.browser.until("return document.querySelector('#gains').textContent.includes('ask again')", 20)
+        self.browser.settled()
+        self.assertFalse(self.browser.all("#gains progress"))
+        self.assertIn("ask again", self.browser.text("#gains"))
+
     def test_a_sweep_of_two_keys_whose_points_open(self):
         self.opened()
         self.browser.click("#to-sweep")

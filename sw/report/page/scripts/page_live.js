@@ -34,6 +34,7 @@ export function showLive(page, {live, database, version}) {
   let pinned = null;    // A: {board, runs}
   let gains = null;     // what `explain` has found: {address, source, knobs}
   let question = null;  // the controller of the open `explain`
+  let isOutdated = false;  // it was ended by a change of the board
 
   // What the page is made of.
   addHead(page, {kind: 'live board', name: '', headline: ''});
@@ -278,6 +279,7 @@ export function showLive(page, {live, database, version}) {
   }
   function changed() {
     previous = settled;
+    isOutdated = Boolean(question);
     question?.abort();
     message.textContent = '';
     keys.refuse([], history.board);
@@ -367,6 +369,7 @@ export function showLive(page, {live, database, version}) {
   // What each single change gains.
   async function askGains() {
     openError(null);
+    isOutdated = false;
     question?.abort();
     const controller = question = new AbortController();
     const bar = h('progress', {'aria-label': 'Single changes are tried'});
@@ -391,7 +394,10 @@ export function showLive(page, {live, database, version}) {
     if (!question) drawGains();
   }
   function drawGains() {
-    gainsHost.replaceChildren();
+    gainsHost.replaceChildren(
+        isOutdated ? h('p', {class: 'note', role: 'status'},
+                       'The board has changed meanwhile: ask again what gains most.') :
+                     '');
     if (gains?.address !== addressOf(history.board)) return;
     const {knobs, source} = gains;
     const kMost = 8;
