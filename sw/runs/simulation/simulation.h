@@ -44,10 +44,10 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   Simulation& operator=(const Simulation&) = delete;
 
   // Simulates all frames. `between` is called again and again, after some ms of wall time, and at the end; at
-  // fidelity fast, the pixels of a whole frame may also lie between two calls. It may call end_early(). Throws
-  // what `between` throws, sc_core::sc_report if a model reports an error, the exception of the source if it
-  // cannot load a pair, and std::runtime_error if the simulation runs out of events or stalls before the last
-  // frame is finished.
+  // fidelity fast, the pixels of a whole frame may also lie between two calls. It may call end_early().
+  // Throws what `between` throws, sc_core::sc_report if a model reports an error, the exception of the source
+  // if it cannot load a pair, and std::runtime_error if the simulation runs out of events or stalls before
+  // the last frame is finished.
   virtual void run(const std::function<void()>& between);
   // The results since the last call, in order.
   std::vector<Result> take_results();
