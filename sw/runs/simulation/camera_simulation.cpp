@@ -49,10 +49,10 @@ void CameraSimulation::run(const std::function<void()>& between) {
   if (loop_ == nullptr) return Simulation::run(between);
   loop_->run(driver_, [&] {
     if (!finished()) check_progress();
-    between();
+    pause(between);
     return !finished();
   });
-  between();
+  pause(between);
 }
 
 const kernels::GrayImage& CameraSimulation::View::frame(std::uint64_t number, std::uint64_t begin_ps) {

@@ -89,13 +89,14 @@ void Simulation::run(const std::function<void()>& between) {
                       frames_done()));
     }
     if (!finished()) check_progress();
-    between();
+    pause(between);
   }
 }
 
-std::vector<Result> Simulation::take_results() {
+void Simulation::pause(const std::function<void()>& between) {
   if (!new_.empty()) last_ = new_.back();
-  return std::exchange(new_, {});
+  between();
+  new_.clear();
 }
 
 void Simulation::record_conflicts(std::uint64_t frames) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "models/fpga/core_config.h"
@@ -49,8 +50,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   // if it cannot load a pair, and std::runtime_error if the simulation runs out of events or stalls before
   // the last frame is finished.
   virtual void run(const std::function<void()>& between);
-  // The results since the last call, in order.
-  std::vector<Result> take_results();
+  // In `between`: the results since its last call, in order.
+  std::vector<Result> take_results() { return std::exchange(new_, {}); }
 
   // Reduces the run to the frames that are finished or have already changed the counters. The results then
   // equal the results of a complete run with fewer frames.
@@ -98,6 +99,8 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   const platform::Tables& tables() const { return tables_; }
   void set_frames(std::uint64_t frames) { frames_ = frames; }
   virtual std::uint64_t now_ps() const;  // the simulated time
+  // Calls `between`.
+  void pause(const std::function<void()>& between);
   // Loads a pair. An exception of the source ends the simulation, and run() throws it.
   const host::StereoPair& load_pair(std::uint64_t number);
   void add_result(Result result);
@@ -137,7 +140,7 @@ class Simulation : private fpga::CycleObserver, private platform::BusObserver {
   std::uint64_t frames_;
   std::uint64_t frames_done_ = 0;
   std::uint64_t cycles_of_done_ = 0;
-  std::vector<Result> new_;  // results since the last take_results()
+  std::vector<Result> new_;  // results since the last pause()
   Result last_;
   std::optional<platform::Conflicts> conflicts_;
   std::uint64_t recorded_frames_ = kAllFrames;
