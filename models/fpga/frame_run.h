@@ -41,7 +41,7 @@ struct DirectCounts {
 };
 
 // Runs the frames of a core one after another, in cycles of its clock: routes the ports to the banks, runs
-// the cycles of a frame, and watches its progress. Plain C++, used by StereoCore and by platform::run_core().
+// the cycles of a frame, and watches its progress. Plain C++, used by StereoCore and by platform::CoreLoop.
 //
 // A frame runs up to its last write. Then it is finishing, and ends pipeline_latency_cycles later.
 class FrameRun {

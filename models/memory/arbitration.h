@@ -22,7 +22,7 @@ struct BankUse {
 
 // Arbitrates all banks (contract section 2): each port is routed to a bank, whose arbiter decides on its
 // requests. The parts of a striped buffer lie in several banks (contract 8.2): its port is routed to all of
-// them, and place() says which one it requests next. Used by Crossbar, by platform::run_core() without a
+// them, and place() says which one it requests next. Used by Crossbar, by platform::CoreLoop without a
 // crossbar, and by the core to skip cycles (fpga::FastForward, fpga::HostPort). Plain C++, no SystemC.
 class Arbitration {
  public:

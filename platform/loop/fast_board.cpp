@@ -10,13 +10,9 @@
 #include "models/memory/memory_config.h"
 #include "models/time_ps.h"
 #include "platform/config/buffer_layout.h"
+#include "platform/loop/core_loop.h"
 
 namespace stereotlm::platform {
-namespace {
-
-constexpr std::uint64_t kStallTimeoutCycles = std::uint64_t{1} << 26U;
-
-}  // namespace
 
 FastBoard::FastBoard(const BoardConfig& config, fpga::Fidelity fidelity,
                      std::function<void(std::uint64_t)> ring)

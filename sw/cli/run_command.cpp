@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "models/binder.h"
-#include "platform/assembly/preloaded_system.h"
 #include "platform/figures/bounds.h"
 #include "sw/cli/command.h"
 #include "sw/cli/run_options.h"
@@ -83,28 +82,6 @@ Outcome simulate(const runs::RunInput& input, runs::Verification* verification) 
   return outcome;
 }
 
-// Whether the counts of the core alone are all that is wanted: count_cycles() has them without the modules.
-bool has_counts_only(const runs::RunInput& input, bool verifies) {
-  return !input.camera && input.fast && input.timing_only && input.recorded_frames == 0 && !input.trace &&
-         !verifies;
-}
-
-// The same figures as simulate(), of the core alone without pixels, in a third of the time.
-Outcome count_cycles(const runs::RunInput& input) {
-  const std::uint64_t frame_cycles = assumed_frame_cycles(input);
-  runs::ProgressLine progress(fmt::format("{} frames are simulated", input.frames));
-  Outcome outcome;
-  outcome.statistics = platform::run_core(
-      input.board, input.tables, input.frames, [&](std::uint64_t done, std::uint64_t cycles) {
-        outcome.frames_done = done;
-        const runs::RunState state = {input.frames, done, cycles, cycles, frame_cycles};
-        progress.show(done, input.frames,
-                      [&](double seconds) { return runs::progress_text(state, seconds); });
-        return !process::interrupted();
-      });
-  return outcome;
-}
-
 // Prints a note about each trace that will be large. A child process traces a sample of the run, without
 // pixels: some frames, or with a window some cycles of a frame. The whole is larger in proportion.
 void say_large_traces(runs::RunInput& input, const TraceOptions& options) {
@@ -177,9 +154,7 @@ int run(const RunCommandOptions& options) {
     recording.emplace(input.board, input.camera);
     input.record = [&recording](const auto& name, const auto& text) { recording->add(name, text); };
   }
-  const Outcome outcome = has_counts_only(input, verification.has_value())
-                              ? count_cycles(input)
-                              : simulate(input, verification ? &*verification : nullptr);
+  const Outcome outcome = simulate(input, verification ? &*verification : nullptr);
   const std::uint64_t done = outcome.frames_done;
   if (done < input.frames) {
     process::say("note", fmt::format("interrupted after {} of {} frames{}", done, input.frames,

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "platform/assembly/preloaded_system.h"
 #include "platform/figures/derived_figures.h"
 #include "platform/figures/proven_rate.h"
 #include "platform/figures/search_bounds.h"
+#include "platform/loop/core_loop.h"
 #include "sw/explore/optimise/key_effects.h"
 #include "sw/runs/simulation/simulate_point.h"
 

@@ -11,6 +11,7 @@
 #include "models/kernel_time.h"
 #include "platform/assembly/preloaded_system.h"
 #include "platform/figures/collect.h"
+#include "platform/loop/core_loop.h"
 #include "sw/runs/simulation/camera_simulation.h"
 
 namespace stereotlm::runs {
@@ -61,6 +62,37 @@ class PreloadedSimulation : public Simulation, private host::FrameSource, privat
 
   platform::PreloadedSystem system_;
   platform::BoardCounters counters_;  // counters at the end of the last finished frame
+};
+
+// The board alone without pixels.
+class CoreSimulation : public Simulation {
+ public:
+  CoreSimulation(const platform::BoardConfig& board, const platform::Tables& tables, host::FrameSource& pairs,
+                 std::uint64_t frames)
+      : Simulation(board, tables, pairs, frames, fpga::Fidelity::kTiming), loop_(board, tables) {}
+
+  void run(const std::function<void()>& between) override {
+    while (!finished()) {
+      loop_.run_frame();
+      add_result({frames_done(), {}});
+      pause(between);
+    }
+  }
+  void end_early() override { set_frames(frames_done()); }
+  fpga::FrameRun& core() override { return loop_.frames(); }
+
+  platform::Statistics statistics() const override {
+    platform::Statistics statistics = loop_.statistics();
+    check_conflicts(statistics);
+    return statistics;
+  }
+
+ private:
+  std::uint64_t now_ps() const override {
+    return Clock(board().fpga.clock_mhz).edge_ps(loop_.frames().done_cycle());
+  }
+
+  platform::CoreLoop loop_;
 };
 
 }  // namespace
@@ -162,6 +194,8 @@ std::unique_ptr<Simulation> make_simulation(const platform::BoardConfig& board,
         std::make_unique<CameraSimulation>(board, tables, pairs, mode.frames, binder, mode.fidelity);
     if (mode.recorded_frames > 0) computer->record_timeline();
     simulation = std::move(computer);
+  } else if (mode.fidelity == fpga::Fidelity::kTiming) {
+    simulation = std::make_unique<CoreSimulation>(board, tables, pairs, mode.frames);
   } else {
     simulation = std::make_unique<PreloadedSimulation>(board, tables, pairs, mode, binder);
   }

@@ -550,6 +550,14 @@ class Workers(PythonTest):
         self.works()
         self.assertEqual(self.worker.pid, pid)
 
+    def test_runs_without_pixels_keep_their_process_which_is_warm(self):
+        run = ["run", "fpl2003", *SMALL, "--timing-only", "--frames", "2", "--page-data"]
+        self.worker.execute("boards")
+        first = program.descendants(self.worker.pid)
+        for more in ("--source=preloaded", "--source=camera"):
+            self.worker.execute(*run, more)
+            self.assertEqual(program.descendants(self.worker.pid), first)
+
     def test_commands_do_not_change_later_ones(self):
         colour = self.file("colour.ppm", b"P6 32 24 255\n" + bytes(2304))
         note = ["run", "fpl2003", *SMALL, *PRELOADED, "--left", colour, "--right", self.right]

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "models/memory/arbitration_policies.h"
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
 #include "platform/figures/bounds.h"
+#include "platform/loop/core_loop.h"
 #include "platform/records/conflicts.h"
 #include "sw/stats/record_csv.h"
 #include "tests/integration/core/preloaded_run.h"

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
+#include "platform/loop/core_loop.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/fork.h"
 #include "tests/support/random_board.h"

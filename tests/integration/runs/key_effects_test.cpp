@@ -5,10 +5,10 @@
 #include <set>
 #include <string>
 
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
+#include "platform/loop/core_loop.h"
 #include "sw/explore/plan/knobs.h"
 
 namespace stereotlm::explore {

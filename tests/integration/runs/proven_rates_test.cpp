@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "models/testing/monitoring_binder.h"
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
 #include "platform/figures/bounds.h"
 #include "platform/figures/proven_rate.h"
+#include "platform/loop/core_loop.h"
 #include "sw/explore/plan/points.h"
 #include "sw/runs/simulation/camera_simulation.h"
 #include "sw/runs/sources/open_source.h"

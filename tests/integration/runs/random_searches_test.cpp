@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_area.h"
 #include "platform/config/board_yaml.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/figures/bounds.h"
 #include "platform/figures/proven_rate.h"
+#include "platform/loop/core_loop.h"
 #include "sw/explore/optimise/search.h"
 #include "sw/runs/simulation/board_model.h"
 #include "sw/runs/simulation/simulate_point.h"

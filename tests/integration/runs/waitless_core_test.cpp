@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
+#include "platform/loop/core_loop.h"
 #include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::runs {

@@ -8,8 +8,8 @@
 #include <ostream>
 
 #include "models/capture/camera_timing.h"
-#include "platform/assembly/preloaded_system.h"
 #include "platform/figures/search_bounds.h"
+#include "platform/loop/core_loop.h"
 #include "tests/unit/platform/preloaded_run.h"
 
 namespace stereotlm::platform {

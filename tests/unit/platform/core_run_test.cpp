@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "platform/assembly/preloaded_system.h"
 #include "platform/config/board_yaml.h"
+#include "platform/loop/core_loop.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/unit/platform/preloaded_run.h"
 
@@ -199,25 +199,19 @@ TEST(CoreRun, RefusesJointTablesThatDoNotFit) {
 
 TEST(CoreRun, EndsAFrameThatMakesNoProgress) {
   const BoardConfig board = small_board();
-  EXPECT_THAT(message_of([&] { run_core(board, identity_tables(board), 1, {}, 1); }),
+  EXPECT_THAT(message_of([&] { run_core(board, identity_tables(board), 1, 1); }),
               HasSubstr("frame 0 of the core: no slot consumed and no result written for 1 cycles"));
 }
 
-TEST(CoreRun, EndsWithTheFrameAfterWhichTheCallerWantsNoMore) {
+TEST(CoreRun, GivesTheFiguresOfTheFramesSoFar) {
   const BoardConfig board = small_board();
-  const Statistics two = run_core(board, identity_tables(board), 2);
-  std::vector<std::uint64_t> cycles;
-  const Statistics found =
-      run_core(board, identity_tables(board), 9, [&](std::uint64_t frames, std::uint64_t so_far) {
-        cycles.push_back(so_far);
-        return frames < 2;
-      });
-  EXPECT_EQ(found.frame_cycles, two.frame_cycles);
-  EXPECT_EQ(found.cycles, two.cycles);
-  ASSERT_EQ(cycles.size(), 2U);
-  EXPECT_LE(cycles[0], two.frame_cycles[0]);
-  EXPECT_LE(cycles[1], two.frame_cycles[0] + two.frame_cycles[1]);
-  EXPECT_GT(cycles[1], cycles[0]);
+  const Tables tables = identity_tables(board);
+  CoreLoop core(board, tables);
+  for (std::uint64_t frames = 1; frames <= 3; ++frames) {
+    core.run_frame();
+    EXPECT_EQ(core.statistics().frame_cycles, run_core(board, tables, frames).frame_cycles);
+    EXPECT_EQ(core.statistics().cycles, run_core(board, tables, frames).cycles);
+  }
 }
 
 // Without tables and with latencies of one cycle, the matcher works in every cycle from the second one on.
@@ -228,9 +222,9 @@ TEST(CoreRun, TakesALongPassOrDrainForNoStall) {
   for (BankConfig& bank : board.banks) bank.kind = memory::BankKind::kZbtFlowThrough;
   board.matcher.disparities = 254;
   board.matcher.units = 1;
-  const Statistics statistics = run_core(board, {}, 2, {}, 2);
+  const Statistics statistics = run_core(board, {}, 2, 2);
   EXPECT_EQ(statistics.frame_cycles.size(), 2U);
-  EXPECT_THAT(message_of([&] { run_core(board, {}, 2, {}, 1); }), HasSubstr("frame 0 of the core: "));
+  EXPECT_THAT(message_of([&] { run_core(board, {}, 2, 1); }), HasSubstr("frame 0 of the core: "));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "models/kernels/rectification_table.h"
-#include "platform/assembly/preloaded_system.h"
+#include "platform/loop/core_loop.h"
 #include "tests/support/board_of_random.h"
 #include "tests/support/plain_cycle_loop.h"
 
