@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <regex>
 
 #include "platform/config/board_area.h"
@@ -120,11 +121,33 @@ std::optional<double> Expression::computed(const Known& known) {
   return sql_->number(values);
 }
 
+// What it can be if this figure alone is not exact.
+Range Expression::range_along(const Known& known, const std::string& figure) {
+  constexpr int kSteps = 8;
+  const Range along = known.range(figure);
+  if (!std::isfinite(along.least) || !std::isfinite(along.most)) return {};
+  Known now = known;
+  std::vector<double> values;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double share = static_cast<double>(step) / kSteps;
+    now.others[figure] = Range::of(along.least * (1 - share) + along.most * share);
+    const auto value = computed(now);
+    if (!value) return {};
+    values.push_back(*value);
+  }
+  if (std::is_sorted(values.begin(), values.end())) return {values.front(), values.back()};
+  if (std::is_sorted(values.rbegin(), values.rend())) return {values.back(), values.front()};
+  return {};
+}
+
 Range Expression::range(const Known& known) {
   if (is_figure_) return known.range(condition_.text);
-  const bool is_known = std::all_of(
-      used_.begin(), used_.end(), [&known](const std::string& name) { return known.range(name).is_exact(); });
-  if (!is_known) return {};
+  std::vector<std::string> open;
+  for (const std::string& name : used_) {
+    if (!known.range(name).is_exact()) open.push_back(name);
+  }
+  if (open.size() > 1) return {};
+  if (!open.empty()) return range_along(known, open.front());
   const auto number = key_ != nullptr ? number_of(platform::value_of(*key_, known.board)) : computed(known);
   if (number) return Range::of(*number);
   throw ConditionError(fmt::format("{}: {}: not a number on each board", condition_.place, condition_.name),

@@ -56,7 +56,9 @@ class Expression {
   // Whether no simulation is needed.
   bool is_fixed() const;
 
-  // Throws ConditionError if SQLite cannot compute it, or it is no number.
+  // If one figure in it is not exact, what lies between the values at both ends of its range. Any number if
+  // the expression does not rise or fall all the way between, or several figures are not exact. Throws
+  // ConditionError if SQLite cannot compute it, or it is no number.
   Range range(const Known& known);
   // Of a condition: whether it is true; nullopt: not known.
   std::optional<bool> holds(const Known& known);
@@ -65,6 +67,7 @@ class Expression {
   struct Comparison;
 
   std::optional<double> computed(const Known& known);
+  Range range_along(const Known& known, const std::string& figure);
   Condition condition_;
   std::set<std::string> used_;
   std::string name_of_bank_;

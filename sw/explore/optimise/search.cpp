@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <queue>
@@ -36,9 +37,10 @@ constexpr const char* kLostPixels = "lost_pixels";
 constexpr double kNoValue = -1;                   // of an accuracy
 constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
 constexpr std::size_t kPieces = 32;               // for each process, of a round
-constexpr std::size_t kRunsOfComputers = 2;       // the same, of a round with whole computers
+constexpr std::size_t kPixels = 2 * 640 * 480;    // the same: of the pictures of its whole computers
 constexpr std::size_t kMostLooked = 4096;         // nodes that a round looks at
 constexpr std::uint64_t kShortWindow = 30;        // frames of the steady rate of a short run, or a turn more
+constexpr std::uint64_t kExactWindow = 4;         // the same, if the rate is proven
 
 using Values = std::array<double, kMostGoals>;  // normalised: larger is better
 
@@ -143,6 +145,8 @@ struct Combination {
   std::vector<std::optional<std::uint64_t>> least_cycles_of_way;
   std::vector<std::string> key_of_way;
   std::vector<std::optional<std::uint64_t>> cycles_of_way;
+  std::optional<std::pair<std::uint64_t, Range>> proven;  // the placement asked last, its rate for long
+
   bool takes_alike = false;  // all banks take the same for an access
   bool is_full = false;      // figures beyond the cycles of the core are needed
   bool is_by_ways = false;   // a frame for each way is all that is simulated
@@ -185,18 +189,22 @@ class Search::Space {
 
   // The frames of a run of a whole computer that may rule it out before its own run, which has at least
   // twice as many; 0: there is none.
-  std::uint64_t short_frames(const Combination& of) const;
+  std::uint64_t short_frames(Combination& of, std::uint64_t placement);
   // The keys of the results that a group, or one of its placements, needs. `is_short`: of the short run.
   std::vector<std::string> result_keys(Combination& of, const Placements::Group& group,
                                        std::uint64_t placement, bool is_short = false);
   std::vector<double> simulate(Combination& of, const Placements::Group& group, std::uint64_t placement,
                                std::size_t which, bool is_short = false);
+  struct Worth {
+    std::vector<Range> goals;
+    bool is_known = true;  // exactly, and that the requirements are met
+    Range steady = {};     // of a whole computer
+  };
   // nullopt if the board does not meet the requirements, or, `is_short`, cannot. `results`: of each of the
-  // keys.
-  std::optional<std::vector<Range>> values(Combination& of, const Placements::Group& group,
-                                           std::uint64_t placement,
-                                           const std::vector<std::vector<double>>& results,
-                                           bool is_short = false);
+  // keys. `steady`: what else is known of the rate. Throws ConditionError if a goal can have any value.
+  std::optional<Worth> worth(Combination& of, const Placements::Group& group, std::uint64_t placement,
+                             const std::vector<std::vector<double>>& results, bool is_short,
+                             const Range& steady = {});
   std::vector<double> totals(const Combination& of, const std::vector<std::vector<double>>& results) const;
   // Of BoardModel::figures_of_cycles, or of result_names().
   std::map<std::string, double> named(const Combination& of, const std::vector<std::vector<double>>& results,
@@ -512,6 +520,7 @@ Search::Space::Estimate Search::Space::estimate(Combination& of, const Placement
 }
 
 Range Search::Space::long_run_rate(Combination& of, std::uint64_t placement, const BoardConfig& placed) {
+  if (of.proven && of.proven->first == placement) return of.proven->second;
   std::vector<std::uint64_t> frame_cycles;
   const std::size_t turn = of.placements->turn();
   for (std::size_t frame = 0; frame < turn && frames_are_independent(placed); ++frame) {
@@ -522,19 +531,24 @@ Range Search::Space::long_run_rate(Combination& of, std::uint64_t placement, con
     frame_cycles.push_back(*cycles);
   }
   if (frame_cycles.empty()) frame_cycles = model_.frame_cycles(placed, turn);
-  return model_.long_run_rate(placed, frame_cycles);
+  const Range rate = model_.long_run_rate(placed, frame_cycles);
+  of.proven.emplace(placement, rate);
+  return rate;
 }
 
-std::uint64_t Search::Space::short_frames(const Combination& of) const {
+std::uint64_t Search::Space::short_frames(Combination& of, std::uint64_t placement) {
+  if (!of.run.camera || !needs_steady_alone_) return 0;
+  const Range proven = long_run_rate(of, placement, of.placements->placed(of.board, placement));
+  const std::uint64_t window = proven.is_exact() ? kExactWindow : kShortWindow;
   const std::uint64_t turn = of.placements->turn();
-  const std::uint64_t frames = turn + (kShortWindow + turn - 1) / turn * turn;
-  return of.run.camera && needs_steady_alone_ && 2 * frames <= of.run.frames ? frames : 0;
+  const std::uint64_t frames = turn + (window + turn - 1) / turn * turn;
+  return 2 * frames <= of.run.frames ? frames : 0;
 }
 
 std::vector<std::string> Search::Space::result_keys(Combination& of, const Placements::Group& group,
                                                     std::uint64_t placement, bool is_short) {
   PointRun run = of.run;
-  if (is_short) run.frames = short_frames(of);
+  if (is_short) run.frames = short_frames(of, placement);
   if (of.is_full) return {result_key(make_point(0, of.placements->placed(of.board, placement), run).hash)};
   std::vector<std::string> keys;
   if (of.is_by_ways) {
@@ -561,7 +575,7 @@ std::vector<double> Search::Space::simulate(Combination& of, const Placements::G
     return {static_cast<double>(std::accumulate(cycles.begin(), cycles.end(), std::uint64_t{0}))};
   }
   PointRun run = of.run;
-  if (is_short) run.frames = short_frames(of);
+  if (is_short) run.frames = short_frames(of, placement);
   const Figures figures = model_.simulate(make_point(0, placed, run));
   std::vector<double> values;
   for (const std::string& name : needed_) {
@@ -602,13 +616,14 @@ std::map<std::string, double> Search::Space::named(const Combination& of,
   return figures;
 }
 
-std::optional<std::vector<Range>> Search::Space::values(Combination& of, const Placements::Group& group,
-                                                        std::uint64_t placement,
-                                                        const std::vector<std::vector<double>>& results,
-                                                        bool is_short) {
+std::optional<Search::Space::Worth> Search::Space::worth(Combination& of, const Placements::Group& group,
+                                                         std::uint64_t placement,
+                                                         const std::vector<std::vector<double>>& results,
+                                                         bool is_short, const Range& known) {
   std::optional<Combination::OfUse> own;
   if (is_alone(of)) own = facts_of(of, of.placements->placed(of.board, placement));
   const Combination::OfUse& facts = own ? *own : of_use(of, group.use);
+  Worth worth;
   Known now = {facts.board, of.run, facts.figures};
   for (const auto& [name, value] : named(of, results, facts.board)) now.others[name] = Range::of(value);
   if (const auto steady = now.others.find(kSteady); steady != now.others.end() && of.run.camera) {
@@ -620,16 +635,30 @@ std::optional<std::vector<Range>> Search::Space::values(Combination& of, const P
       proven.least = std::max(proven.least, now.range(kExactLeast).least);
       proven.most = std::max(proven.least, std::min(proven.most, most));
     }
-    steady->second = narrowed(proven, rate, uncertainty);
+    const Range its = narrowed(proven, rate, uncertainty);
+    const double most = std::min(its.most, known.most);
+    worth.steady = steady->second = {std::min(std::max(its.least, known.least), most), most};
   }
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];
-    if (!(fixed ? fixed : requirements_[i].holds(now)).value_or(is_short)) return std::nullopt;
+    const std::optional<bool> holds = fixed ? fixed : requirements_[i].holds(now);
+    if (!holds.value_or(is_short)) return std::nullopt;
+    worth.is_known = worth.is_known && holds.has_value();
   }
-  std::vector<Range> values;
-  for (std::size_t goal = 0; goal < goals(); ++goal)
-    values.push_back(facts.goals[goal] ? *facts.goals[goal] : goals_[goal].range(now));
-  return values;
+  for (std::size_t goal = 0; goal < goals(); ++goal) {
+    const Range range = facts.goals[goal] ? *facts.goals[goal] : goals_[goal].range(now);
+    if (!std::isfinite(range.least) || !std::isfinite(range.most)) {
+      const std::string& text = goals_[goal].text();
+      throw ConditionError(
+          fmt::format("{}: the rate of a board lies between {:.3f} and {:.3f} frames/s: the goal must rise "
+                      "all the way between them, or fall",
+                      text, worth.steady.least, worth.steady.most),
+          text);
+    }
+    worth.goals.push_back(range);
+    worth.is_known = worth.is_known && range.is_exact();
+  }
+  return worth;
 }
 
 // A combination, or some of its placements, that are not decided yet.
@@ -703,33 +732,30 @@ std::vector<double> Search::bests_of(const std::vector<Range>& values) const {
   return bests;
 }
 
-// Each value is what both runs leave open. So a board that its short run rules out is ruled out by its own
+// The rate is what both runs leave open. So a board that its short run rules out is ruled out by its own
 // run too, and the front does not depend on which boards had a run of their own.
 Search::Found Search::find(Combination& its, const Placements::Group& group, std::uint64_t placement,
                            const GetResult& get) {
-  std::optional<std::vector<Range>> of_short;
-  if (space_->short_frames(its) > 0) {
+  std::optional<Space::Worth> of_short;
+  if (space_->short_frames(its, placement) > 0) {
     const std::string key = space_->result_keys(its, group, placement, true).front();
     const auto result = get(key, 0, true);
-    of_short = space_->values(its, group, placement, {result}, true);
+    of_short = space_->worth(its, group, placement, {result}, true);
     if (!of_short) return {"unmet", {}, {}};
-    if (is_dominated(bests_of(*of_short).data())) return {"bound", *of_short, {}};
+    if (is_dominated(bests_of(of_short->goals).data())) return {"bound", of_short->goals, {}};
+    if (of_short->is_known) return {"front", of_short->goals, {}};
   }
   Found found;
   for (const std::string& key : space_->result_keys(its, group, placement)) {
     const auto result = get(key, found.results.size(), false);
-    if (result.empty()) return {"", *of_short, {}};
+    if (result.empty()) return {"", of_short->goals, {}};
     found.results.push_back(result);
   }
-  const auto values = space_->values(its, group, placement, found.results);
+  const Range steady = of_short ? of_short->steady : Range();
+  const auto worth = space_->worth(its, group, placement, found.results, false, steady);
   found.fate = "unmet";
-  if (!values) return found;
-  found.values = *values;
-  for (std::size_t goal = 0; of_short && goal < values->size(); ++goal) {
-    const Range& other = (*of_short)[goal];
-    const double most = std::min(found.values[goal].most, other.most);
-    found.values[goal] = {std::min(std::max(found.values[goal].least, other.least), most), most};
-  }
+  if (!worth) return found;
+  found.values = worth->goals;
   found.fate = is_dominated(bests_of(found.values).data()) ? "dominated" : "front";
   return found;
 }
@@ -842,7 +868,7 @@ bool Search::assess(const std::function<bool()>& keep_going) {
 bool Search::step(const std::function<bool()>& keep_going) {
   std::vector<Node> chosen;  // their placements are known before the processes are forked
   std::vector<Node> later;
-  std::size_t computers = 0;
+  std::size_t pixels = 0;  // of the frames of whole computers
   const auto is_worse = [goals = space_->goals()](const Node& a, const Node& b) {
     bool is_better = false;
     for (std::size_t goal = 0; goal < goals; ++goal) {
@@ -852,7 +878,7 @@ bool Search::step(const std::function<bool()>& keep_going) {
     return is_better;
   };
   for (std::size_t looked = 0; looked < kMostLooked && !heap_->nodes.empty(); ++looked) {
-    if (chosen.size() == kPieces * processes_ || computers == kRunsOfComputers * processes_) break;
+    if (chosen.size() == kPieces * processes_ || pixels >= kPixels * processes_) break;
     const Node node = heap_->nodes.top();
     heap_->nodes.pop();
     if (is_dominated(node.best.data())) {
@@ -862,8 +888,9 @@ bool Search::step(const std::function<bool()>& keep_going) {
     const bool waits =
         std::any_of(chosen.begin(), chosen.end(), [&](const Node& other) { return is_worse(node, other); });
     (waits ? later : chosen).push_back(node);
-    if (!waits && space_->combination(node.combination).run.camera && node.placement != Node::kAll)
-      ++computers;
+    if (waits || node.placement == Node::kAll) continue;
+    const Combination& its = space_->combination(node.combination);
+    if (its.run.camera) pixels += std::size_t{1} * its.board.image.width * its.board.image.height;
   }
   for (const Node& node : later) heap_->nodes.push(node);
 
@@ -885,7 +912,7 @@ bool Search::step(const std::function<bool()>& keep_going) {
       had_short_run = is_short;
       const auto result = space_->simulate(its, group, placement, which, is_short);
       results_.emplace(key, result);
-      const bool is_second = !is_short && space_->short_frames(its) > 0;
+      const bool is_second = !is_short && space_->short_frames(its, placement) > 0;
       bytes.put(is_second ? 's' : 'r');
       bytes.put_text(key);
       bytes.put_numbers(result);

@@ -178,7 +178,7 @@ class Search {
   struct Found {
     std::string fate;                          // unmet, bound, dominated, front; empty: a result is missing
     std::vector<Range> values;                 // [goal]; without meaning if unmet
-    std::vector<std::vector<double>> results;  // of its own run; empty if its short run rules it out
+    std::vector<std::vector<double>> results;  // of its own run; empty if its short run is enough
   };
   // Gives the result of a key, the one with number `which` of the placement; empty if it is not known yet.
   using GetResult =

@@ -106,6 +106,21 @@ class Optimise(ProgramTest):
         self.assertTrue(1 <= boards <= sum(most >= least for _, most in whole))
         self.assertIn(least, [point["values"][0]["least"] for point in found["front"]])
 
+    def test_a_goal_with_the_rate_of_a_computer_lies_between_those_of_both_ends(self):
+        plan = self.plan("board: fpl2003\nset: {image.width: 48, image.height: 32}\nrun: {source: camera}\n"
+                         "vary:\n  matcher.disparities: [8, 16]\nplacements: {banks: 2}\n")
+        points = self.found(plan, "--maximise", "round(frames_per_second.steady)",
+                            "--minimise", "area.slices", "--minimise", "banks_used")["front"]
+        self.assertEqual([[(value["least"], value["most"]) for value in point["values"]] for point in points],
+                         [[(30, 30), (points[0]["values"][1]["least"],) * 2, (1, 1)]])
+        best = self.found(plan, "--maximise", "frames_per_second.steady / area.slices")["front"]
+        for value in (point["values"][0] for point in best):
+            self.assertTrue(0.97 < value["least"] * points[0]["values"][1]["least"] / 29.97 <= 1, value)
+        self.fails(run("optimise", plan, "--maximise", "abs(frames_per_second.steady - 29.9699)",
+                       "--quiet"),
+                   "abs(frames_per_second.steady - 29.9699): the rate of a board lies between 29.9",
+                   "frames/s: the goal must rise all the way between them, or fall")
+
     def test_bytes_depend_on_the_search_alone(self):
         """Killed at random and resumed, with any number of processes."""
         plan = self.plan(LONG)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -37,6 +38,7 @@ std::uint64_t spaces_of_environment(std::uint64_t otherwise) {
 }
 
 constexpr const char* kStalls = "ports.result.stall_cycles";  // known only from a whole run
+constexpr const char* kForArea = "frames_per_second.core / area.slices";
 
 // The text of a plan of a small space.
 class RandomSpace {
@@ -121,6 +123,7 @@ class RandomSpace {
                                                        {"matcher.window * matcher.disparities", true},
                                                        {"banks_used", false},
                                                        {"pins", false},
+                                                       {kForArea, true},
                                                        {kStalls, false}};
     std::shuffle(goals.begin(), goals.end(), random_);
     goals.resize(1 + below(4));
@@ -251,6 +254,7 @@ double value_of(const std::string& text, const BoardConfig& board, const explore
   };
   if (text == "banks_used") return static_cast<double>(std::count(used.begin(), used.end(), true));
   if (text == "pins") return platform::pins_of(board);
+  if (text == kForArea) return of_figure("frames_per_second.core") / of_figure("area.slices");
   if (text == "matcher.window * matcher.disparities") return board.matcher.window * board.matcher.disparities;
   return of_figure(text);
 }
@@ -440,6 +444,9 @@ TEST(RandomSearches, SeeAWrongBound) {
   EXPECT_GT(seen(wrong), 0);
 }
 
+constexpr const char* kByTwenties = "round(frames_per_second.steady / 20)";
+constexpr const char* kQuick = "frames_per_second.steady >= 500";
+
 // Of whole computers. A plan whose cameras are about as quick as the core, so that some boards lose pixels.
 std::pair<std::string, std::string> computer_space(std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -469,7 +476,9 @@ std::pair<std::string, std::string> computer_space(std::uint64_t seed) {
   std::string plan = fmt::format("board: board.yaml\nrun: {{source: camera{}}}\nvary:\n",
                                  frames == 0 ? "" : fmt::format(", frames: {}", frames));
   for (std::size_t i = 0; i < 2; ++i) plan += "  " + axes[i] + '\n';
-  plan += "placements: {banks: 3}\nmaximise: [frames_per_second.steady]\n";
+  plan += fmt::format("placements: {{banks: 3}}\nmaximise: [\"{}\"]\n",
+                      below(2) == 0 ? kByTwenties : "frames_per_second.steady");
+  if (below(3) == 0) plan += fmt::format("require: {}\n", kQuick);
   if (below(2) == 0) plan += "minimise: [banks_used]\n";
   return {board, plan};
 }
@@ -516,7 +525,10 @@ TEST(RandomSearches, OfComputersFindTheFrontOfBruteForce) {
           steady->most = std::min(steady->most, other->most);
           steady->least = std::min(std::max(steady->least, other->least), steady->most);
         }
+        if (!plan.wishes().requirements.empty() && steady->least < 500) continue;
         Values values = {{steady->least, steady->most}};
+        if (plan.wishes().goals[0].figure.text == kByTwenties)
+          values = {{std::round(steady->least / 20), std::round(steady->most / 20)}};
         if (plan.wishes().goals.size() > 1) {
           const double banks = -value_of("banks_used", board, {});
           values.emplace_back(banks, banks);
