@@ -42,6 +42,20 @@ placements: {banks: 2, stripes: 2}
 maximise: frames_per_second.core
 minimise: [energy.memory_mj_per_frame]
 """
+# Whole computers: some lose pixels, and a rate is a range.
+COMPUTER = """
+board: fpl2003
+run: {source: camera}
+set: {image: {width: 48, height: 32}, cameras.frame_rate_hz: 900, fpga.clock_mhz: 2}
+vary:
+  matcher.disparities: [8, 16]
+  matcher.window: [3, 7]
+  capture.fifo_words: [16, 24, 140]
+placements: {banks: 2}
+maximise: [frames_per_second.steady, matcher.disparities]
+minimise: [area.slices, banks_used]
+require: frames_per_second.steady >= 150
+"""
 BOARD = """
 extends: fpl2003
 name: small
@@ -83,11 +97,22 @@ class CheckSearch(ProgramTest):
         self.search(SINGLE)
         self.agrees("dominated", "front")
 
+    def test_agrees_with_searches_of_computers(self):
+        self.search(COMPUTER)
+        process = self.check()
+        self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
+        for one in ("impossible", "bound", "dominated", "front", "unmet"):
+            self.assertRegex(process.stdout, rf"[1-9]\d* {one}, boards")
+        self.sees([("UPDATE examined SET fate = 'bound' WHERE fate = 'front'", "nothing on the front beats"),
+                   ("UPDATE examined SET results = results + 1 WHERE fate = 'dominated'", "other results"),
+                   ("UPDATE front_values SET least = least + 9, most = most + 9 WHERE goal = 0",
+                    "boards of the front with other values"),
+                   ("UPDATE examined SET fate = 'front' WHERE fate = 'unmet'",
+                    "the requirements say otherwise")])
+
     def test_sees_what_is_wrong(self):
-        """A statement that spoils the database, and what the checker says then."""
         self.search(GROUPS)
-        good = self.store.read_bytes()
-        for statement, expected in [
+        self.sees([
             ("DELETE FROM parts WHERE verdict = 'bound'", "the parts are no cover"),
             ("UPDATE parts SET verdict = 'impossible' WHERE verdict = 'excluded'",
              "a board that is possible, or is not"),
@@ -105,7 +130,12 @@ class CheckSearch(ProgramTest):
             ("UPDATE front SET boards = boards + 1", "another number of boards has a point"),
             ("DELETE FROM front_values WHERE point = 0", "nothing on the front beats|with other values"),
             ("UPDATE search SET value = value + 1 WHERE name = 'boards'", "another number of boards"),
-        ]:
+        ])
+
+    def sees(self, wrong):
+        """A statement that spoils the database, and what the checker says then."""
+        good = self.store.read_bytes()
+        for statement, expected in wrong:
             with self.subTest(statement):
                 self.store.write_bytes(good)
                 with sqlite3.connect(self.store) as database:
