@@ -97,6 +97,7 @@ bool Expression::is_fixed() const {
 
 Range narrowed(const Range& proven, double rate, double uncertainty) {
   constexpr double kRounding = 1e-9;
+  if (proven.is_exact()) return proven;
   const Range both = {std::max(rate - uncertainty, proven.least), std::min(rate + uncertainty, proven.most)};
   if (both.least <= both.most) return both;
   return both.least - both.most < kRounding * rate ? Range::of(both.most) : proven;

@@ -197,8 +197,8 @@ class Search::Space {
                                std::size_t which, bool is_short = false);
   struct Worth {
     std::vector<Range> goals;
-    bool is_known = true;  // exactly, and that the requirements are met
     Range steady = {};     // of a whole computer
+    bool is_known = true;  // the rate exactly, each goal, and that the requirements are met
   };
   // nullopt if the board does not meet the requirements, or, `is_short`, cannot. `results`: of each of the
   // keys. `steady`: what else is known of the rate. Throws ConditionError if a goal can have any value.
@@ -638,6 +638,7 @@ std::optional<Search::Space::Worth> Search::Space::worth(Combination& of, const 
     const Range its = narrowed(proven, rate, uncertainty);
     const double most = std::min(its.most, known.most);
     worth.steady = steady->second = {std::min(std::max(its.least, known.least), most), most};
+    worth.is_known = worth.steady.is_exact();
   }
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];
@@ -890,7 +891,7 @@ bool Search::step(const std::function<bool()>& keep_going) {
     (waits ? later : chosen).push_back(node);
     if (waits || node.placement == Node::kAll) continue;
     const Combination& its = space_->combination(node.combination);
-    if (its.run.camera) pixels += std::size_t{1} * its.board.image.width * its.board.image.height;
+    if (its.run.camera) pixels += static_cast<std::size_t>(its.board.image.width * its.board.image.height);
   }
   for (const Node& node : later) heap_->nodes.push(node);
 
