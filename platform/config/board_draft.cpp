@@ -321,7 +321,8 @@ BoardDraft::Reading BoardDraft::read_with_problems() const {
   for (Finding& finding : findings) {
     std::string place = place_text(finding.place);
     if (!reported.emplace(place, finding.text).second) continue;
-    reading.problems.push_back({std::move(place), std::move(finding.text), finding.is_between_keys});
+    reading.problems.push_back(
+        {std::move(place), std::move(finding.text), finding.is_between_keys, !finding.missing.empty()});
   }
   return reading;
 }

@@ -17,6 +17,7 @@ struct Diagnostic {
   std::string place;             // `file:line:column`, `--set path`, or a file or preset as a whole
   std::string text;              // `full.path = value: rule`, `full.path: missing: rule`, or a rule alone
   bool is_between_keys = false;  // the rule involves several keys: each of them could be changed
+  bool is_missing = false;       // of a key that is not there
 };
 
 // All problems of a board, in the order of its file, then of the `--set` options. what() has one line,

@@ -325,7 +325,7 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
 }
 
 std::string judgement_text(const Search::Judgement& judgement, const Search& search) {
-  if (!judgement.refused.empty()) return "refused: " + judgement.refused + '\n';
+  if (!judgement.refused.empty()) return "is refused: " + judgement.refused + '\n';
   if (!judgement.unmet.empty()) return "does not meet " + judgement.unmet + '\n';
   const auto values_text = [&](const std::vector<explore::Range>& values) {
     std::string text;

@@ -112,14 +112,13 @@ Range Known::range(const std::string& figure) const {
 
 // By SQLite. All figures that it names are exact. nullopt: NULL.
 std::optional<double> Expression::computed(const Known& known) {
-  std::vector<platform::BoardValue> values = platform::values_of(known.board);
-  values.push_back({kSourcePath, known.run.camera ? "camera" : "preloaded"});
-  values.push_back({kFramesPath, static_cast<std::int64_t>(known.run.frames)});
+  std::vector<platform::BoardValue> values = {{kSourcePath, known.run.camera ? "camera" : "preloaded"},
+                                              {kFramesPath, static_cast<std::int64_t>(known.run.frames)}};
   for (const std::string& name : used_) values.push_back({name, known.range(name).least});
   if (!sql_)
     sql_ = std::make_unique<Conditions>(std::vector<Condition>{condition_},
                                         std::vector<std::string>{used_.begin(), used_.end()});
-  return sql_->number(values);
+  return sql_->number(known.board, std::move(values));
 }
 
 // What it can be if this figure alone is not exact.

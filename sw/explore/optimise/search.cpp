@@ -36,7 +36,7 @@ constexpr const char* kExactMost = "frames_per_second.exact_most";
 constexpr const char* kLostPixels = "lost_pixels";
 constexpr double kNoValue = -1;                   // of an accuracy
 constexpr std::size_t kCombinationsOfPiece = 64;  // that are assessed together
-constexpr std::size_t kPieces = 32;               // for each process, of a round
+constexpr std::size_t kPieces = 128;              // for each process, of a round
 constexpr std::size_t kPixels = 2 * 640 * 480;    // the same: of the pictures of its whole computers
 constexpr std::size_t kMostLooked = 4096;         // nodes that a round looks at
 constexpr std::uint64_t kShortWindow = 30;        // frames of the steady rate of a short run, or a turn more
@@ -91,6 +91,11 @@ class Bytes {
 
 std::string result_key(const std::string& text) {
   return files::sha256_hex(text.data(), text.size()).substr(0, 32);
+}
+
+// Whether another placement may not have this problem: a rule between keys, which is checked again for it.
+bool is_of_placement(const platform::Diagnostic& problem) {
+  return problem.is_between_keys && !problem.is_missing;
 }
 
 // Whether a frame of the core leaves nothing behind that the next frame could notice.
@@ -311,7 +316,7 @@ Combination& Search::Space::combination(std::uint64_t number) {
   Plan::ReadPoint read = plan_.read(number);
   std::vector<std::string> rules;
   for (const platform::Diagnostic& problem : read.reading.problems) {
-    if (wishes_.most_banks == 0 || !problem.is_between_keys) rules.push_back(problem.text);
+    if (wishes_.most_banks == 0 || !is_of_placement(problem)) rules.push_back(problem.text);
   }
   return take(number, std::move(read.reading.board), read.run, rules, wishes_.most_banks > 0);
 }
@@ -1057,7 +1062,7 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
   places = places && wishes_.most_banks > 0;
   std::vector<std::string> rules;
   for (const platform::Diagnostic& problem : reading.problems) {
-    if (!places || !problem.is_between_keys) rules.push_back(problem.text);
+    if (!places || !is_of_placement(problem)) rules.push_back(problem.text);
   }
   const std::vector<bool> used = platform::used_banks(reading.board);
   const auto banks = std::count(used.begin(), used.end(), true);

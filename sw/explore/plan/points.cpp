@@ -24,32 +24,36 @@ constexpr int kStepsOfPortion = 1000;
 // These take as many steps as a number among their arguments says, and cannot be stopped.
 constexpr std::array<std::string_view, 2> kUnlimitedFunctions = {"printf", "format"};
 
+// The name of a key in a condition.
+std::string parameter_of(const std::string& path) { return path == "name" ? "board.name" : path; }
+
 // The names that a condition may use, "table.column", with the numbers of their parameters.
 const std::map<std::string, int>& parameters() {
   static const std::map<std::string, int> kParameters = [] {
     std::map<std::string, int> all = {{kBankCount, 1}, {kSourcePath, 2}, {kFramesPath, 3}};
     for (const platform::Key& key : platform::board_keys()) {
-      if (platform::has_value(key))
-        all.emplace(key.path == "name" ? "board.name" : key.path, static_cast<int>(all.size()) + 1);
+      if (platform::has_value(key)) all.emplace(parameter_of(key.path), static_cast<int>(all.size()) + 1);
     }
     return all;
   }();
   return kParameters;
 }
 
-// The SQL tables for the values of a point: "(SELECT ?1 AS width, ..) AS image, ..". If `has_point` is false,
-// all values are NULL.
+// The column of a name "table.column".
+std::string column_of(const std::string& name) { return name.substr(name.find('.') + 1); }
+
+// The SQL tables for the values of a point: " FROM (SELECT ?1 AS width, ..) AS image, ..". If `has_point` is
+// false, all values are NULL.
 std::string tables_text(const std::map<std::string, int>& parameters, bool has_point) {
   std::map<std::string, std::string> columns;  // [table]
   for (const auto& [name, number] : parameters) {
-    const std::size_t dot = name.find('.');
-    std::string& list = columns[name.substr(0, dot)];
+    std::string& list = columns[name.substr(0, name.find('.'))];
     list += fmt::format("{}{} AS \"{}\"", list.empty() ? "" : ", ",
-                        has_point ? fmt::format("?{}", number) : "NULL", name.substr(dot + 1));
+                        has_point ? fmt::format("?{}", number) : "NULL", column_of(name));
   }
   std::string text;
   for (const auto& [table, list] : columns)
-    text += fmt::format("{}(SELECT {}) AS {}", text.empty() ? "" : ", ", list, table);
+    text += fmt::format("{}(SELECT {}) AS {}", text.empty() ? " FROM " : ", ", list, table);
   return text;
 }
 
@@ -83,19 +87,26 @@ std::set<std::string> allowed_functions(const sqlite::Database& database) {
 // quotes and brackets; SQLite's message then quotes only the text. Then in brackets, which refuses a clause
 // behind the expression, such as LIMIT, and a comment that does not end.
 Conditions::Conditions(const std::vector<Condition>& conditions, const std::vector<std::string>& figures)
-    : database_("where", sqlite::Database::Access::kMemory),
-      parameters_(parameters()),
-      functions_(allowed_functions(database_)) {
+    : database_("where", sqlite::Database::Access::kMemory), functions_(allowed_functions(database_)) {
   sqlite3_set_authorizer(database_.handle(), authorize, this);
-  for (const std::string& figure : figures)
-    parameters_.emplace(figure, static_cast<int>(parameters_.size()) + 1);
+  std::string all;
+  for (const Condition& condition : conditions) all += without_case(condition.text) + '\n';
+  const auto add = [&](const std::string& name) {
+    const bool may_be_used = all.find(without_case(column_of(name))) != std::string::npos;
+    if (may_be_used) parameters_.emplace(name, static_cast<int>(parameters_.size()) + 1);
+  };
+  for (const auto& [name, number] : parameters()) add(name);
+  for (const std::string& figure : figures) add(figure);
+  for (const platform::Key& key : platform::board_keys()) {
+    if (platform::has_value(key) && parameters_.count(parameter_of(key.path)) > 0) keys_.push_back(&key);
+  }
   const std::string no_point = tables_text(parameters_, false);
   const std::string point = tables_text(parameters_, true);
   for (const Condition& condition : conditions) {
-    const auto alone = compile(fmt::format("SELECT 1 FROM {} WHERE {}", no_point, condition.text));
+    const auto alone = compile(fmt::format("SELECT 1{} WHERE {}", no_point, condition.text));
     if (sqlite3_bind_parameter_count(alone->handle()) > 0)
       throw std::invalid_argument("parameters such as ? and :x have no value");
-    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)) FROM {}", condition.text, point))});
+    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)){}", condition.text, point))});
   }
   sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
   const auto exceeds_steps = [](void* self) {
@@ -141,12 +152,13 @@ void Conditions::bind(const std::vector<BoardValue>& values) {
     if (parameter == parameters_.end()) return;
     for (const Compiled& compiled : compiled_) compiled.statement->bind(parameter->second, value);
   };
+  const bool counts_banks = parameters_.count(kBankCount) > 0;
   std::int64_t banks = 0;
   for (const BoardValue& value : values) {
-    if (platform::schema_path(value.path) == "ssram.banks.NAME.words") ++banks;
-    bind_one(value.path == "name" ? "board.name" : value.path, value.value);
+    if (counts_banks && platform::schema_path(value.path) == "ssram.banks.NAME.words") ++banks;
+    bind_one(parameter_of(value.path), value.value);
   }
-  bind_one(kBankCount, banks);
+  if (banks > 0) bind_one(kBankCount, banks);
 }
 
 template <typename Read>
@@ -172,12 +184,24 @@ bool Conditions::hold(const std::vector<BoardValue>& values) {
   });
 }
 
-std::optional<double> Conditions::number(const std::vector<BoardValue>& values) {
+std::optional<double> Conditions::number(const platform::BoardConfig& board, std::vector<BoardValue> values) {
+  for (const platform::Key* const key : keys_) {
+    if (has_key(board, *key)) values.push_back({key->path, value_of(*key, board)});
+  }
+  if (parameters_.count(kBankCount) > 0)
+    values.push_back({kBankCount, static_cast<std::int64_t>(board.banks.size())});
+  const auto is_same = [](const BoardValue& a, const BoardValue& b) {
+    return a.path == b.path && a.value == b.value;
+  };
+  if (last_ && std::equal(values.begin(), values.end(), last_->first.begin(), last_->first.end(), is_same))
+    return last_->second;
   bind(values);
-  return computed(compiled_.front(), [](sqlite::Statement& row) {
+  const auto number = computed(compiled_.front(), [](sqlite::Statement& row) {
     const bool is_null = !row.step() || sqlite3_column_type(row.handle(), 0) == SQLITE_NULL;
     return is_null ? std::nullopt : std::optional<double>(row.real(0));
   });
+  last_.emplace(std::move(values), number);
+  return number;
 }
 
 std::uint64_t frames_of(const PointRun& run, const platform::BoardConfig& board) {

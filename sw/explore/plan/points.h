@@ -107,8 +107,9 @@ class Conditions {
 
   // Whether all conditions are true. `values`: of keys, and of `figures`. Throws ConditionError.
   bool hold(const std::vector<platform::BoardValue>& values);
-  // The value of the first expression; nullopt: NULL. Throws ConditionError.
-  std::optional<double> number(const std::vector<platform::BoardValue>& values);
+  // The value of the first expression on a board; nullopt: NULL. `values`: of the run, and of `figures`. The
+  // last value is remembered. Throws ConditionError.
+  std::optional<double> number(const platform::BoardConfig& board, std::vector<platform::BoardValue> values);
 
  private:
   struct Compiled {
@@ -127,11 +128,13 @@ class Conditions {
   auto computed(const Compiled& compiled, const Read& read);
 
   sqlite::Database database_;
-  std::map<std::string, int> parameters_;  // [name that a text may use]
-  std::set<std::string> functions_;        // names of the functions that a text may call
-  std::string refusal_;                    // the reason for which authorize() refused the text being compiled
+  std::map<std::string, int> parameters_;   // [name whose column occurs in a text]
+  std::vector<const platform::Key*> keys_;  // of them
+  std::set<std::string> functions_;         // names of the functions that a text may call
+  std::string refusal_;  // the reason for which authorize() refused the text being compiled
   std::vector<Compiled> compiled_;
   int portions_ = 0;  // of the steps of this computation
+  std::optional<std::pair<std::vector<platform::BoardValue>, std::optional<double>>> last_;  // of number()
 };
 
 }  // namespace stereotlm::explore

@@ -163,7 +163,17 @@ class Optimise(ProgramTest):
         text = self.succeeds(run(*ask, "--why", "matcher.disparities=200"))
         self.assertIn("this board does not meet area.slices < 12000", text)
         text = self.succeeds(run(*ask, "--why", "matcher.rows=3", "--why", "matcher.fetch=line_buffer"))
-        self.assertIn("this board refused: matcher.rows = 3: must be 1", text)
+        self.assertIn("this board is refused: matcher.rows = 3: must be 1", text)
+
+    def test_a_key_that_a_kind_of_bank_misses_is_missing_in_any_placement(self):
+        """With placements, the kind without its key was evaluated, and ended the search."""
+        kinds = PLAN.replace("placements", "  ssram.default.kind: [zbt_pipelined, sync_burst]\nplacements")
+        one_kind, both = [self.found(self.plan(text)) for text in (PLAN, kinds)]
+        self.assertEqual(both["boards"], one_kind["boards"])
+        self.assertEqual([point["values"] for point in both["front"]],
+                         [point["values"] for point in one_kind["front"]])
+        text = self.succeeds(run("optimise", self.plan(), "--why", "ssram.default.kind=sync_burst"))
+        self.assertIn("this board is refused: ssram.default.turnaround_cycles: missing: 1..16", text)
 
     def test_says_what_leaves_nothing(self):
         ask = ["optimise", "fpl2003", *sets("image.width=32", "image.height=24"), "--minimise", "area.slices"]

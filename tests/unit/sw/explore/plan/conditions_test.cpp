@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -52,6 +54,8 @@ TEST(Conditions, CompareKeysThatHaveTheirNamesInABoardFile) {
       {"board.name = 'fpl2003'", true, {}},
       {"ssram.banks = 8", true, {}},
       {"run.frames = 6 AND run.source = 'preloaded'", true, {}},
+      {"window = 7 AND MATCHER.\"Window\" = 7 AND [image].`width` = 640", true, {}},
+      {"1 + 1 = 2", true, {}},
       {"NULL", false, {}},
       {"pci.\"load.burst_words\" = 32", false, {}},
       {"pci.\"load.burst_words\" IS NULL", true, {}},
@@ -78,6 +82,24 @@ TEST(Conditions, ForgetTheValuesOfThePointBefore) {
     EXPECT_TRUE(of_load.hold(point({"pci.load={burst_words: 8, interval_us: 10}"})));
     EXPECT_FALSE(of_load.hold(point()));
   }
+}
+
+TEST(Conditions, GiveTheNumberOfAnExpressionOnEachBoard) {
+  const Condition text = {"ssram.banks * matcher.window + run.frames * pins + length(board.name)", "here",
+                          "x"};
+  Conditions expression({text}, {"pins"});
+  const auto number = [&](const Sets& sets, std::int64_t frames, double pins) {
+    return expression.number(platform::load_board("fpl2003", sets),
+                             {{"run.frames", frames}, {"run.source", "camera"}, {"pins", pins}});
+  };
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(number({}, 2, 0.5), 8 * 7 + 2 * 0.5 + 7);
+    EXPECT_EQ(number({"matcher.window=5"}, 2, 0.5), 8 * 5 + 2 * 0.5 + 7);
+    EXPECT_EQ(number({"matcher.window=5"}, 3, 0.5), 8 * 5 + 3 * 0.5 + 7);
+    EXPECT_EQ(number({"ssram.banks.more={}"}, 3, 0.25), 9 * 7 + 3 * 0.25 + 7);
+  }
+  EXPECT_EQ(Conditions({{"pci.\"load.burst_words\"", "", ""}}).number(platform::load_board("fpl2003"), {}),
+            std::nullopt);
 }
 
 TEST(Conditions, CountBanksByTheirWords) {
