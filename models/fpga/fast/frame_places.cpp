@@ -38,15 +38,15 @@ class Accesses {
       columns.push_back(first);
       add_row_ends(kResultGroup, first, columns);
     }
-    std::sort(columns.begin(), columns.end());
+    std::stable_sort(columns.begin(), columns.end());  // quick, because most are two sorted lists
     columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
     return columns;
   }
-  // The accesses that come with a column.
-  Key of(std::uint64_t column) const {
-    Key key = {std::uint64_t{column >= geometry_.result_delay_columns} |
-               std::uint64_t{column >= geometry_.columns} << 1U |
-               std::uint64_t{column >= fewer_rows_column()} << 2U};
+  // Sets a key to the accesses that come with a column.
+  void of(std::uint64_t column, Key& key) const {
+    key.assign(1, std::uint64_t{column >= geometry_.result_delay_columns} |
+                      std::uint64_t{column >= geometry_.columns} << 1U |
+                      std::uint64_t{column >= fewer_rows_column()} << 2U);
     if (column < geometry_.columns) {
       std::uint64_t empty = 0;
       for (int k = 0; k < geometry_.slots_per_column; ++k)
@@ -55,16 +55,14 @@ class Accesses {
       for (std::size_t group = 0; group < kResultGroup; ++group) add_rows(group, column, key);
     }
     if (column >= geometry_.result_delay_columns) add_rows(kResultGroup, column, key);
-    return key;
   }
-  // How far the rows from which open rows are counted move with a column.
-  Key moves(std::uint64_t column) const {
-    Key key;
+  // Sets a key to how far the rows from which open rows are counted move with a column.
+  void moves(std::uint64_t column, Key& key) const {
+    key.clear();
     for (const SdramPart& part : sdram_)
       add_signed(
           column == 0 ? 0 : origin_row(geometry_, part, column) - origin_row(geometry_, part, column - 1),
           key);
-    return key;
   }
   std::uint64_t end() const {
     return geometry_.columns + static_cast<std::uint64_t>(geometry_.drain_columns);
@@ -144,17 +142,23 @@ FramePlaces::FramePlaces(const CoreConfig& config, std::uint64_t ahead, std::uin
   end_ = accesses.end();
   Numbers keys;
   std::vector<Change> changes;
-  const std::uint64_t none = keys.of(accesses.moves(0));
+  Key none;  // no row moves
+  accesses.moves(0, none);
+  Key key;
+  Key last;
+  Key moves;
   for (const std::uint64_t column : accesses.changes()) {
-    const Change change = {column, keys.of(accesses.of(column)), keys.of(accesses.moves(column))};
-    if (changes.empty() || change.accesses != changes.back().accesses || change.moves != none)
-      changes.push_back(change);
+    accesses.of(column, key);
+    accesses.moves(column, moves);
+    if (!changes.empty() && key == last && moves == none) continue;
+    changes.push_back({column, keys.of(key), keys.of(moves)});
+    last.swap(key);
   }
   Numbers numbers;
   std::size_t first = 0;  // the first change that the column sees
   for (std::uint64_t column = 0; column < end_;) {
     while (first < changes.size() && changes[first].column + behind <= column) ++first;
-    Key key = {first == 0 ? UINT64_MAX : changes[first - 1].accesses};
+    key.assign(1, first == 0 ? UINT64_MAX : changes[first - 1].accesses);
     std::size_t next = first;
     for (; next < changes.size() && changes[next].column <= column + ahead; ++next) {
       for (const std::uint64_t word :
