@@ -211,24 +211,6 @@ std::string value_text(const explore::Range& value) {
   return fmt::format("{:.3f} ± {:.3f}", (value.least + value.most) / 2, (value.most - value.least) / 2);
 }
 
-std::string key_value(const BoardConfig& board, const std::string& path) {
-  const platform::Key* const key = platform::find_key(path);
-  if (key != nullptr && platform::has_value(*key))
-    return platform::value_text(platform::value_of(*key, board));
-  for (const platform::BoardValue& value : platform::values_of(board)) {
-    if (value.path == path) return platform::value_text(value.value);
-  }
-  // ssram.default: of the first bank.
-  for (const platform::BoardValue& value : platform::values_of(board)) {
-    const std::string of_default = "ssram.default.";
-    if (path.rfind(of_default, 0) == 0 &&
-        value.path ==
-            fmt::format("ssram.banks.{}.{}", board.banks.front().name, path.substr(of_default.size())))
-      return platform::value_text(value.value);
-  }
-  return "";
-}
-
 // The front as a table: goals, number of boards, and the keys that differ, of the first board of each.
 std::string front_text(Search& search, const explore::Plan& plan) {
   std::vector<std::vector<std::string>> rows(1);
@@ -236,20 +218,19 @@ std::string front_text(Search& search, const explore::Plan& plan) {
   rows[0].emplace_back("boards");
   const auto& front = search.front();
   const std::size_t listed = std::min(front.size(), kMostPoints);
-  std::vector<BoardConfig> boards;
-  for (std::size_t i = 0; i < listed; ++i) boards.push_back(*search.board(front[i].first.front()).board);
+  std::vector<std::vector<std::string>> values;  // of the keys that vary, in the first boards
+  for (std::size_t i = 0; i < listed; ++i)
+    values.push_back(plan.varied_values(front[i].first.front().combination));
+  const std::vector<std::string> keys = plan.varied();
   std::string same;
-  std::vector<std::string> varied;
-  for (const std::string& path : plan.varied()) {
-    const std::string first = key_value(boards.front(), path);
-    const bool is_same = std::all_of(boards.begin(), boards.end(), [&](const BoardConfig& board) {
-      return key_value(board, path) == first;
-    });
-    if (is_same) {
-      same += fmt::format("{}{}: {}", same.empty() ? "" : ", ", path, first);
+  std::vector<std::size_t> varied;
+  for (std::size_t key = 0; key < keys.size(); ++key) {
+    const std::string& first = values.front()[key];
+    if (std::all_of(values.begin(), values.end(), [&](const auto& its) { return its[key] == first; })) {
+      same += fmt::format("{}{}: {}", same.empty() ? "" : ", ", keys[key], first);
     } else {
-      varied.push_back(path);
-      rows[0].push_back(path);
+      varied.push_back(key);
+      rows[0].push_back(keys[key]);
     }
   }
   if (search.wishes().most_banks > 0) rows[0].emplace_back("banks");
@@ -257,10 +238,10 @@ std::string front_text(Search& search, const explore::Plan& plan) {
     std::vector<std::string>& row = rows.emplace_back();
     for (const explore::Range& value : front[i].values) row.push_back(value_text(value));
     row.push_back(std::to_string(front[i].boards));
-    for (const std::string& path : varied) row.push_back(key_value(boards[i], path));
-    const std::vector<bool> used = platform::used_banks(boards[i]);
-    if (search.wishes().most_banks > 0)
-      row.push_back(std::to_string(std::count(used.begin(), used.end(), true)));
+    for (const std::size_t key : varied) row.push_back(values[i][key]);
+    if (search.wishes().most_banks == 0) continue;
+    const std::vector<bool> used = platform::used_banks(*search.board(front[i].first.front()).board);
+    row.push_back(std::to_string(std::count(used.begin(), used.end(), true)));
   }
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows) {

@@ -104,7 +104,7 @@ class Placements:
         self.names = list(board["ssram"]["banks"])
         banks = [plain_core.bank_of(board, name) for name in self.names]
         energy = board["ssram"]["default"].get("energy", {})
-        self.kinds = [json.dumps([[bank[key] for key in ("kind", "words", *TIMING.get(bank["kind"], []))],
+        self.kinds = [json.dumps([[bank.get(key) for key in ("kind", "words", *TIMING.get(bank["kind"], []))],
                                   sorted({**energy, **bank.get("energy", {})}.items())]) for bank in banks]
         lists = plain_core.buffers(board)
         self.is_joint = board["fpga"].get("tables") == "joint"

@@ -10,7 +10,7 @@ def up(dividend, divisor):
 
 
 def read_latency(bank):
-    return bank["cas_latency"] if bank["kind"] == "sdram" else LATENCY[bank["kind"]]
+    return bank.get("cas_latency") if bank["kind"] == "sdram" else LATENCY[bank["kind"]]
 
 
 def bank_of(board, name):

@@ -180,18 +180,20 @@ const std::vector<std::string>& figures_without_simulation() {
                                       "area.multipliers",
                                       "area.multipliers_percent",
                                       "pins",
-                                      "banks_used"};
+                                      "banks_used",
+                                      "area.pins",
+                                      "area.pins_percent"};
     names.insert(names.end(), accuracy_figures().begin(), accuracy_figures().end());
     return names;
   }();
   return kNames;
 }
 
-// Those of the first names.
+// Those of the first names; of the last two only if the board has them.
 FigureRanges figures_without_simulation(const platform::BoardConfig& board) {
   const area::Area its = platform::area_of(board);
   const std::vector<bool> used = platform::used_banks(board);
-  const std::vector<double> values = {
+  std::vector<double> values = {
       static_cast<double>(its.lut_equivalents),
       static_cast<double>(its.slices),
       its.slices_percent,
@@ -204,6 +206,10 @@ FigureRanges figures_without_simulation(const platform::BoardConfig& board) {
       static_cast<double>(platform::pins_of(board)),
       static_cast<double>(std::count(used.begin(), used.end(), true)),
   };
+  if (its.pins && its.pins_percent) {
+    values.push_back(static_cast<double>(*its.pins));
+    values.push_back(*its.pins_percent);
+  }
   FigureRanges figures;
   for (std::size_t i = 0; i < values.size(); ++i)
     figures.emplace(figures_without_simulation()[i], Range::of(values[i]));

@@ -89,6 +89,10 @@ class Bytes {
   std::size_t at_ = 0;
 };
 
+[[noreturn]] void throw_no_figure(const std::string& name) {
+  throw std::runtime_error(fmt::format("{}: a board of the plan does not have this figure", name));
+}
+
 std::string result_key(const std::string& text) {
   return files::sha256_hex(text.data(), text.size()).substr(0, 32);
 }
@@ -216,6 +220,8 @@ class Search::Space {
                                       const BoardConfig& board) const;
 
  private:
+  // Throws std::length_error if there are too many.
+  std::shared_ptr<const Placements> placements_of(const BoardConfig& board) const;
   const Combination::OfUse& of_use(Combination& of, std::uint32_t use);
   Combination::OfUse facts_of(const Combination& of, const BoardConfig& board);
   // `most_steady`: of a whole computer, an upper bound of its rate.
@@ -233,12 +239,13 @@ class Search::Space {
   std::vector<Expression> goals_;
   std::vector<bool> maxima_;
   std::vector<Expression> requirements_;
-  std::vector<std::string> needed_;    // figures that only a simulation gives, or those of the core
-  std::vector<std::string> accuracy_;  // its figures that are needed
-  bool is_judged_ = true;              // whether the last combination has them
-  bool needs_all_ = false;             // a figure beyond those of the core
-  bool needs_steady_alone_ = false;    // the only one of a run is the steady rate
-  bool needs_energy_ = false;          // that of sdram does not follow from the cycles alone
+  std::vector<std::string> without_simulation_;  // needed figures that no simulation gives
+  std::vector<std::string> needed_;              // figures that only a simulation gives, or those of the core
+  std::vector<std::string> accuracy_;            // its figures that are needed
+  bool is_judged_ = true;                        // whether the last combination has them
+  bool needs_all_ = false;                       // a figure beyond those of the core
+  bool needs_steady_alone_ = false;              // the only one of a run is the steady rate
+  bool needs_energy_ = false;                    // that of sdram does not follow from the cycles alone
   std::unique_ptr<Conditions> conditions_;
   std::map<std::string, std::shared_ptr<const Placements>> placements_;
   std::unordered_map<std::string, std::uint64_t> cycles_;  // bounds, by their keys
@@ -256,6 +263,11 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   const auto add = [&](const Condition& text, std::vector<Expression>& to) {
     for (const std::string& name : names_in(text.text)) {
       if (stats::find_figure(name) != nullptr) names.insert(name);
+      if (name == kExact || name == kExactMost)
+        problems.push_back(
+            {text.place, fmt::format("{}: not every board has a proven rate: give {}, which is "
+                                     "the proven rate where there is one",
+                                     text.name, kSteady)});
     }
     try {
       to.emplace_back(text, names);
@@ -296,7 +308,9 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
           {{plan.path(), fmt::format("{}: of pictures: give {} or {}", name, kPairsPath, kSyntheticPath)}});
     accuracy_.push_back(name);
   }
-  for (const std::string& name : without) needed.erase(name);
+  for (const std::string& name : without) {
+    if (needed.erase(name) > 0) without_simulation_.push_back(name);
+  }
   for (const std::string& name : needed)
     needs_all_ = needs_all_ || std::count(core_figures().begin(), core_figures().end(), name) == 0;
   needs_steady_alone_ = needed == std::set<std::string>{kSteady};
@@ -321,6 +335,14 @@ Combination& Search::Space::combination(std::uint64_t number) {
   return take(number, std::move(read.reading.board), read.run, rules, wishes_.most_banks > 0);
 }
 
+std::shared_ptr<const Placements> Search::Space::placements_of(const BoardConfig& board) const try {
+  const int most = std::min(wishes_.most_banks, static_cast<int>(board.banks.size()));
+  return std::make_shared<Placements>(board, most, wishes_.most_parts);
+} catch (const std::length_error& error) {
+  throw std::length_error(
+      fmt::format("{}: placements: {}: give fewer banks, stripes or buffers", plan_.path(), error.what()));
+}
+
 // Makes a combination the last one. `rules`: that its board breaks. `places`: whether its buffers can be
 // placed elsewhere.
 Combination& Search::Space::take(std::uint64_t number, BoardConfig board, const PointRun& run,
@@ -338,8 +360,7 @@ Combination& Search::Space::take(std::uint64_t number, BoardConfig board, const 
   std::shared_ptr<const Placements> all;
   if (places) {
     std::shared_ptr<const Placements>& known = placements_[Placements::key(last_.board)];
-    const int most = std::min(wishes_.most_banks, static_cast<int>(last_.board.banks.size()));
-    if (!known) known = std::make_shared<Placements>(last_.board, most, wishes_.most_parts);
+    if (!known) known = placements_of(last_.board);
     all = known;
     if (all->size() == 0)
       return impossible(
@@ -455,6 +476,9 @@ std::uint64_t Search::Space::least_cycles(Combination& of, const Placements::Gro
 Combination::OfUse Search::Space::facts_of(const Combination& of, const BoardConfig& board) {
   Combination::OfUse facts = {board, figures_without_simulation(board), {}, {}};
   facts.figures.insert(of.accuracy.begin(), of.accuracy.end());
+  for (const std::string& name : without_simulation_) {
+    if (facts.figures.count(name) == 0) throw_no_figure(name);
+  }
   const Known known = {facts.board, of.run, facts.figures};
   for (Expression& goal : goals_)
     facts.goals.push_back(goal.is_fixed() ? std::optional(goal.range(known)) : std::nullopt);
@@ -587,8 +611,7 @@ std::vector<double> Search::Space::simulate(Combination& of, const Placements::G
     const auto found = std::find_if(figures.values.begin(), figures.values.end(),
                                     [&name](const auto& value) { return value.path == name; });
     if (found == figures.values.end()) {
-      if (name != kUncertainty && name.rfind(kExact, 0) != 0)
-        throw std::runtime_error(fmt::format("{}: a board of the plan does not have this figure", name));
+      if (name != kUncertainty && name.rfind(kExact, 0) != 0) throw_no_figure(name);
       values.push_back(0);
     } else if (const auto* const integer = std::get_if<std::int64_t>(&found->value)) {
       values.push_back(static_cast<double>(*integer));

@@ -76,14 +76,19 @@ SearchStore::SearchStore(const std::string& path, const Asked& asked)
   if (const auto layout = database.number("PRAGMA user_version"); layout != kLayout)
     throw sqlite::DatabaseError(fmt::format(
         "{}: its layout is {}, of another version; this version writes {}", path, layout, kLayout));
+  is_finished_ = database.number("SELECT count(*) FROM sqlite_schema WHERE name = 'front'") > 0;
+  const bool is_empty = !is_finished_ && database.number("SELECT count(*) FROM results") == 0;
   for (const auto& [name, value] : asked_) {
     sqlite::Statement row(database, "SELECT value FROM search WHERE name = ?");
     row.bind(1, name);
     if (row.step() && row.text(0) == value) continue;
+    if (is_empty) {
+      ask(database);
+      return;
+    }
     throw sqlite::DatabaseError(
-        fmt::format("{}: holds another search, with another {}: give another file", path, name));
+        fmt::format("{}: holds another search, which differs in its {}: give another file", path, name));
   }
-  is_finished_ = database.number("SELECT count(*) FROM sqlite_schema WHERE name = 'front'") > 0;
 }
 
 void SearchStore::create(sqlite::Database& database) const {
@@ -91,8 +96,14 @@ void SearchStore::create(sqlite::Database& database) const {
       fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {};"
                   "CREATE TABLE search(name TEXT PRIMARY KEY NOT NULL, value) WITHOUT ROWID",
                   kApplicationId, kLayout));
+  ask(database);
+}
+
+void SearchStore::ask(sqlite::Database& database) const {
+  database.execute("SAVEPOINT asked; DELETE FROM search");
   Rows rows(database, "search", 2);
   for (const auto& [name, value] : asked_) rows.add({name, value});
+  database.execute("RELEASE asked");
 }
 
 Search::Results SearchStore::results() const {

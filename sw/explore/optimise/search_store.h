@@ -33,7 +33,8 @@ class SearchStore {
   // What was asked for; two searches are the same if all of it is equal.
   using Asked = std::map<std::string, std::string>;
 
-  // Throws DatabaseError if the file is not one of this kind, or is of another search.
+  // Throws DatabaseError if the file is not one of this kind, or is of another search, unless that one has no
+  // results.
   SearchStore(const std::string& path, const Asked& asked);
 
   bool is_finished() const { return is_finished_; }
@@ -48,6 +49,8 @@ class SearchStore {
 
  private:
   void create(sqlite::Database& database) const;
+  // Writes what is asked for.
+  void ask(sqlite::Database& database) const;
 
   std::string path_;
   Asked asked_;

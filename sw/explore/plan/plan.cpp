@@ -76,23 +76,27 @@ platform::YamlNode PlanValues::at(std::uint64_t number) const {
   return platform::YamlNode::plain((value < 0 ? "-" : "") + text, place);
 }
 
-Plan::Combination Plan::combination(std::uint64_t number) const {
+void Plan::each_value(std::uint64_t number,
+                      const std::function<void(const std::string&, const platform::YamlNode&)>& visit) const {
   std::uint64_t rest = sample_ ? shuffled_number(product_, sample_->seed, number) : number;
   std::vector<std::uint64_t> places(axes_.size());
   for (std::size_t axis = axes_.size(); axis-- > 0; rest /= axes_[axis].size())
     places[axis] = rest % axes_[axis].size();
-  Combination made = {*base_, run_};
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-    for (std::size_t i = 0; i < axes_[axis].paths.size(); ++i) {
-      const std::string& path = axes_[axis].paths[i];
-      const platform::YamlNode value = axes_[axis].values[i].at(places[axis]);
-      if (may_vary(path)) {
-        apply_run_key(path, value, made.run);
-      } else {
-        made.draft.replace(path, value, path_);
-      }
-    }
+    for (std::size_t i = 0; i < axes_[axis].paths.size(); ++i)
+      visit(axes_[axis].paths[i], axes_[axis].values[i].at(places[axis]));
   }
+}
+
+Plan::Combination Plan::combination(std::uint64_t number) const {
+  Combination made = {*base_, run_};
+  each_value(number, [&](const std::string& path, const platform::YamlNode& value) {
+    if (may_vary(path)) {
+      apply_run_key(path, value, made.run);
+    } else {
+      made.draft.replace(path, value, path_);
+    }
+  });
   return made;
 }
 
@@ -106,6 +110,14 @@ std::vector<std::string> Plan::varied() const {
   std::vector<std::string> paths;
   for (const Axis& axis : axes_) paths.insert(paths.end(), axis.paths.begin(), axis.paths.end());
   return paths;
+}
+
+std::vector<std::string> Plan::varied_values(std::uint64_t number) const {
+  std::vector<std::string> values;
+  each_value(number, [&values](const std::string& /*path*/, const platform::YamlNode& value) {
+    values.push_back(platform::flow_text(value));
+  });
+  return values;
 }
 
 Point Plan::point(std::uint64_t number) const {

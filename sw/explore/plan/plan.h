@@ -79,6 +79,8 @@ class Plan {
   const std::vector<Condition>& conditions() const { return conditions_; }
   // The keys whose values vary, in the order of the plan.
   std::vector<std::string> varied() const;
+  // The values that the plan gives them in a point.
+  std::vector<std::string> varied_values(std::uint64_t number) const;
   // Why the board cannot have the tables of the calibration of the plan; nullopt if it can, or if the plan
   // has none.
   std::optional<std::string> tables_problem(const platform::BoardConfig& board) const {
@@ -137,6 +139,9 @@ class Plan {
     PointRun run;
   };
   Combination combination(std::uint64_t number) const;
+  // Calls `visit` with each key that varies, in their order, and its value in a point.
+  void each_value(std::uint64_t number,
+                  const std::function<void(const std::string&, const platform::YamlNode&)>& visit) const;
   // The reason for which a board cannot have the tables of the calibration: its image size, a side without a
   // buffer for a table, or tables that cannot be joined. Leaves out reasons that depend on keys for which
   // `is_checked` is false. Nullopt without a reason or without a calibration.

@@ -25,6 +25,7 @@ vary:
   matcher.fetch: [column, line_buffer]
   matcher.rows: [1, 2]
   fpga.lanes: {from: 1, to: 2, step: 1}
+  ssram.default.kind: [zbt_pipelined, sdram]
 where: [matcher.window + fpga.lanes <> 7]
 placements: {banks: 2}
 maximise: frames_per_second.core

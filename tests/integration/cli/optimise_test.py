@@ -175,6 +175,23 @@ class Optimise(ProgramTest):
         text = self.succeeds(run("optimise", self.plan(), "--why", "ssram.default.kind=sync_burst"))
         self.assertIn("this board is refused: ssram.default.turnaround_cycles: missing: 1..16", text)
 
+    def test_shows_the_values_of_the_plan(self):
+        plan = PLAN.replace("placements", "  ssram.default: [{words: 4096, kind: qdr}]\n  run.frames: [2]\nplacements")
+        text = self.succeeds(run("optimise", self.plan(plan)))
+        self.assertIn("ssram.default: {words: 4096, kind: qdr}, run.frames: 2", " ".join(text.split()))
+
+    def test_a_store_without_results_is_free(self):
+        """Such as that of a search that ended with an error."""
+        plan = PLAN.replace("minimise: [area.slices,", "minimise: [area.pins_percent,")
+        process = run("optimise", self.plan(plan), "--out", self.store)
+        self.assertEqual((process.returncode, process.stderr.splitlines()[-1]), (
+            1, "stereotlm: error: area.pins_percent: a board of the plan does not have this figure"))
+        self.succeeds(run("optimise", self.plan(), "--out", self.store))
+        plan = plan.replace("vary:", "vary:\n  fpga.package: [ff1152, ff1517]")
+        values = self.found(self.plan(plan))["front"][0]["values"]
+        self.assertEqual([value["figure"] for value in values],
+                         ["frames_per_second.core", "area.pins_percent", "banks_used"])
+
     def test_says_what_leaves_nothing(self):
         ask = ["optimise", "fpl2003", *sets("image.width=32", "image.height=24"), "--minimise", "area.slices"]
         text = self.succeeds(run(*ask, "--for", "frames_per_second.core >= 1000000"))
@@ -190,6 +207,9 @@ class Optimise(ProgramTest):
              "--minimise: area.slice: no such column: area.slice; nearest: area.slices"),
             (["optimise", self.file("core.yaml", PLAN), "--maximise", "frames_per_second.steady"],
              "frames_per_second.steady: of a whole computer: give run.source: camera"),
+            (["optimise", "fpl2003", "--maximise", "frames_per_second.exact"],
+             "--maximise: frames_per_second.exact: not every board has a proven rate: give "
+             "frames_per_second.steady, which is the proven rate where there is one"),
             (["optimise", "fpl2003", "--minimise", "pins", "--within", "5"],
              "--within = 5: must be a time such as 90s, 5min or 2h"),
             (["optimise", self.plan(), "--set", "fpga.lanes=2"],
@@ -204,7 +224,7 @@ class Optimise(ProgramTest):
         self.succeeds(run("optimise", self.plan(), "--out", self.store))
         process = run("optimise", self.plan(), "--out", self.store, "--for", "pins < 500")
         self.assertEqual(process.returncode, 2)
-        self.assertIn("holds another search, with another goals", process.stderr)
+        self.assertIn("holds another search, which differs in its goals: give another file", process.stderr)
 
 
 if __name__ == "__main__":
