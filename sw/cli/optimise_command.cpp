@@ -97,7 +97,8 @@ struct Question {
   std::optional<explore::Plan> plan;
   explore::SearchWishes wishes;
   std::string text;         // of the plan; of a board the plan that is made from it
-  std::string board_words;  // the board, as words of a command line
+  std::string board_words;  // a board, as words of a command line
+  BoardConfig board;        // that board
 };
 
 // Whether the file is a plan: a map with a key that only plans have. A file that cannot be read as YAML is
@@ -164,6 +165,7 @@ Question question_of(const OptimiseOptions& options) {
       question.text = sent != nullptr ? *sent : platform::read_text_file(name, "plan");
       question.plan = explore::Plan::load(name, "", &question.text);
       question.board_words = files::shell_word(question.plan->board());
+      question.board = platform::BoardDraft(question.plan->board()).read_with_problems().board;
     } else {
       const BoardConfig board = platform::load_board(name, options.sets.texts());
       question.text = plan_of_board(name, board, options);
@@ -172,6 +174,7 @@ Question question_of(const OptimiseOptions& options) {
       question.board_words = files::shell_word(name);
       for (const std::string& set : options.sets.texts())
         question.board_words += " --set " + files::shell_word(set);
+      question.board = board;
     }
   });
   question.wishes = question.plan->wishes();
@@ -261,10 +264,9 @@ std::string front_text(Search& search, const explore::Plan& plan) {
 
 // The command that explains a board further.
 std::string command_of(const Question& question, const BoardConfig& board, const explore::PointRun& run) {
-  const BoardConfig base = question.plan->base().read();
   std::string command = "stereotlm explain " + question.board_words;
   if (!run.camera) command += " --source preloaded";
-  for (const std::string& set : platform::sets_between(base, board))
+  for (const std::string& set : platform::sets_between(question.board, board))
     command += " --set " + files::shell_word(set);
   return command;
 }
@@ -303,6 +305,11 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
     if (!text.empty()) return text;
   }
   return "no board meets all requirements together\n";
+}
+
+// Why there is no board.
+std::string no_board_text(Search& search) {
+  return fmt::format("no combination is a board; the first: {}\n", search.board({0, 0}).reason);
 }
 
 std::string judgement_text(const Search::Judgement& judgement, const Search& search) {
@@ -358,7 +365,9 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
   std::string text =
       fmt::format("{} boards in {} combinations of values\n", answer.boards, search.combinations());
   if (search.front().empty()) {
-    text += answer.is_proven ? empty_text(answer.question, model, processes) : "no board so far\n";
+    text += !answer.is_proven    ? "no board so far\n"
+            : answer.boards == 0 ? no_board_text(search)
+                                 : empty_text(answer.question, model, processes);
   } else {
     text += front_text(search, plan);
     if (search.front().size() == 1) {

@@ -115,7 +115,7 @@ std::vector<std::string> Plan::varied() const {
 std::vector<std::string> Plan::varied_values(std::uint64_t number) const {
   std::vector<std::string> values;
   each_value(number, [&values](const std::string& /*path*/, const platform::YamlNode& value) {
-    values.push_back(platform::flow_text(value));
+    values.push_back(value.is_scalar() ? value.text : platform::flow_text(value));
   });
   return values;
 }

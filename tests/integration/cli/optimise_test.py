@@ -2,6 +2,7 @@
 
 import json
 import random
+import shlex
 import signal
 import sqlite3
 import time
@@ -62,8 +63,11 @@ class Optimise(ProgramTest):
             values = {value["figure"]: value["least"] for value in point["values"]}
             self.assertEqual(values["frames_per_second.core"], stats["frames_per_second"]["core"])
             self.assertEqual(values["area.slices"], stats["area"]["slices"])
-            command = point["command"].split()
-            self.assertEqual(command[:3], ["stereotlm", "explain", "fpl2003"])
+            command = shlex.split(point["command"])
+            self.assertEqual(command[:5], ["stereotlm", "explain", "fpl2003", "--source", "preloaded"])
+            named, written = (json.loads(self.succeeds(run("check", *words, "--json")))["values"]
+                              for words in (["fpl2003", *command[5:]], [board]))
+            self.assertEqual(named, written)
 
     def test_accuracy_is_a_goal_and_a_requirement(self):
         """Compared with a sweep of the same plan."""
@@ -198,6 +202,9 @@ class Optimise(ProgramTest):
         self.assertRegex(text, r"no board meets frames_per_second.core >= 1000000: the nearest has \d+")
         text = self.succeeds(run(*ask, "--for", "frames_per_second.core >= 20000"))
         self.assertRegex(text, r"the first of them: stereotlm explain fpl2003 --set image.width=32")
+        plan = PLAN.replace("rows: [1, 2]", "rows: [2]\n  fpga.result_fifo_words: [1]")
+        self.assertIn("no combination is a board; the first: fpga.result_fifo_words = 1: at least 2",
+                      self.succeeds(run("optimise", self.plan(plan))))
 
     def test_refusals(self):
         self.all_refused([
