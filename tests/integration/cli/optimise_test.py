@@ -180,7 +180,8 @@ class Optimise(ProgramTest):
         self.assertIn("this board is refused: ssram.default.turnaround_cycles: missing: 1..16", text)
 
     def test_shows_the_values_of_the_plan(self):
-        plan = PLAN.replace("placements", "  ssram.default: [{words: 4096, kind: qdr}]\n  run.frames: [2]\nplacements")
+        axes = "  ssram.default: [{words: 4096, kind: qdr}]\n  run.frames: [2]\n"
+        plan = PLAN.replace("placements", axes + "placements")
         text = self.succeeds(run("optimise", self.plan(plan)))
         self.assertIn("ssram.default: {words: 4096, kind: qdr}, run.frames: 2", " ".join(text.split()))
 
