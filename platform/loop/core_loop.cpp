@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "platform/config/buffer_layout.h"
-#include "platform/figures/collect.h"
 
 namespace stereotlm::platform {
 namespace {
@@ -56,17 +55,25 @@ CoreLoop::CoreLoop(const BoardConfig& board, const Tables& tables, std::uint64_t
 
 void CoreLoop::run_frame() { run_next_frame(frames_, buffers_, patterns_, stall_timeout_cycles_); }
 
-Statistics CoreLoop::statistics() const {
-  return collect_statistics(board_, frame_accesses(board_, patterns_), "fast", frames_.frame_cycles(),
-                            counters_of(frames_, arbitration_));
+CoreCounts CoreLoop::counts() const {
+  return {frame_accesses(board_, patterns_), frames_.frame_cycles(), counters_of(frames_, arbitration_)};
+}
+
+Statistics statistics_of(const BoardConfig& board, const CoreCounts& counts) {
+  return collect_statistics(board, counts.accesses, "fast", counts.frame_cycles, counts.counters);
+}
+
+CoreCounts count_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+                      std::uint64_t stall_timeout_cycles) {
+  if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
+  CoreLoop core(board, tables, stall_timeout_cycles);
+  for (std::uint64_t frame = 0; frame < frames; ++frame) core.run_frame();
+  return core.counts();
 }
 
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
                     std::uint64_t stall_timeout_cycles) {
-  if (frames == 0) throw std::invalid_argument("frames = 0: must be 1 or more");
-  CoreLoop core(board, tables, stall_timeout_cycles);
-  for (std::uint64_t frame = 0; frame < frames; ++frame) core.run_frame();
-  return core.statistics();
+  return statistics_of(board, count_core(board, tables, frames, stall_timeout_cycles));
 }
 
 std::vector<std::uint64_t> core_frame_cycles(const BoardConfig& board, const fpga::AccessPatterns& patterns,

@@ -9,11 +9,22 @@
 #include "models/memory/arbitration.h"
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
+#include "platform/figures/collect.h"
 #include "platform/figures/statistics.h"
 
 namespace stereotlm::platform {
 
 constexpr std::uint64_t kStallTimeoutCycles = std::uint64_t{1} << 26U;
+
+// What some frames of the core have done. Boards that differ only in what the core does not notice share it.
+struct CoreCounts {
+  FrameAccesses accesses;
+  std::vector<std::uint64_t> frame_cycles;
+  BoardCounters counters;
+};
+
+// The figures of a board that has done this.
+Statistics statistics_of(const BoardConfig& board, const CoreCounts& counts);
 
 // The timing of PreloadedSystem (`--source preloaded`) without pixels, modules and the SystemC kernel: a loop
 // over the core's control and the arbiters. The figures equal those of PreloadedSystem at Fidelity::kTiming.
@@ -33,8 +44,8 @@ class CoreLoop {
   // The frames, to record them.
   fpga::FrameRun& frames() { return frames_; }
   const fpga::FrameRun& frames() const { return frames_; }
-  // The figures of the frames so far, one at least.
-  Statistics statistics() const;
+  // Of the frames so far, one at least.
+  CoreCounts counts() const;
 
  private:
   const BoardConfig& board_;
@@ -45,7 +56,10 @@ class CoreLoop {
   fpga::FrameRun frames_;
 };
 
-// The figures of CoreLoop. Throws what it throws, and std::invalid_argument if `frames` is 0.
+// What CoreLoop counts. Throws what it throws, and std::invalid_argument if `frames` is 0.
+CoreCounts count_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
+                      std::uint64_t stall_timeout_cycles = kStallTimeoutCycles);
+// The figures of count_core().
 Statistics run_core(const BoardConfig& board, const Tables& tables, std::uint64_t frames,
                     std::uint64_t stall_timeout_cycles = kStallTimeoutCycles);
 // The lengths of the frames of run_core() alone, of tables with these access_patterns().

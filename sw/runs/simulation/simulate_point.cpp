@@ -16,9 +16,11 @@
 #include "models/binder.h"
 #include "models/fpga/fast/sdram_parts.h"
 #include "models/kernels/rectification_table.h"
+#include "platform/config/board_keys.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/figures/derived_figures.h"
 #include "platform/loop/core_loop.h"
+#include "sw/explore/optimise/key_effects.h"
 #include "sw/explore/sweep/sweep.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/child.h"
@@ -103,9 +105,24 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, bool wi
     throw std::runtime_error("the tables of the calibration are of another board");
   if (!is_usable) tables_ = platform::identity_tables(board);
   const auto accuracy = quality_.of(board, is_calibrated_ ? &tables_ : nullptr);
-  return explore::figures_of(
-      point.run.camera ? simulate_computer(point, tables_, accuracy, with_core_waits)
-                       : document_of(platform::run_core(board, tables_, point.run.frames), board, accuracy));
+  return explore::figures_of(point.run.camera
+                                 ? simulate_computer(point, tables_, accuracy, with_core_waits)
+                                 : document_of(statistics_of(board, core_counts(point)), board, accuracy));
+}
+
+// Next to each other in a plan are points that differ in the key that varies fastest.
+const platform::CoreCounts& PointSimulator::core_counts(const explore::Point& point) {
+  std::string key = explore::core_cycles_key(*point.board) + std::to_string(point.run.frames);
+  for (const platform::BoardValue& value : point.values) {  // banks that hold no buffer are counted too
+    const platform::Key* const its = platform::find_key(platform::schema_path(value.path));
+    if (value.path.rfind("ssram.", 0) == 0 && its != nullptr &&
+        explore::effects_of_key(its->path).core_cycles)
+      key += fmt::format(" {} {}", value.path, platform::value_text(value.value));
+  }
+  if (core_ && key == core_key_) return *core_;
+  core_ = platform::count_core(*point.board, tables_, point.run.frames);
+  core_key_ = std::move(key);
+  return *core_;
 }
 
 PixelRun simulate_pixels(const platform::BoardConfig& board, const platform::Tables& tables,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "platform/config/board_config.h"
 #include "platform/config/tables.h"
 #include "platform/figures/statistics.h"
+#include "platform/loop/core_loop.h"
 #include "sw/explore/plan/points.h"
 #include "sw/explore/store/store.h"
 #include "sw/runs/simulation/point_quality.h"
@@ -32,11 +34,16 @@ class PointSimulator {
   explore::Figures operator()(const explore::Point& point, bool with_core_waits = false);
 
  private:
+  const platform::CoreCounts& core_counts(const explore::Point& point);
+
   // The given tables; if there are none, the identity tables of the last point, because the next point mostly
   // has the same.
   platform::Tables tables_;
   bool is_calibrated_ = false;
   PointQuality quality_;
+  // Of the last board alone, and the text that boards share if the core does not notice their difference.
+  std::optional<platform::CoreCounts> core_;
+  std::string core_key_;
 };
 
 // The result of simulate_pixels().

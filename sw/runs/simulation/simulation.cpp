@@ -82,7 +82,7 @@ class CoreSimulation : public Simulation {
   fpga::FrameRun& core() override { return loop_.frames(); }
 
   platform::Statistics statistics() const override {
-    platform::Statistics statistics = loop_.statistics();
+    platform::Statistics statistics = statistics_of(board(), loop_.counts());
     check_conflicts(statistics);
     return statistics;
   }

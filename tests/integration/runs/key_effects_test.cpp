@@ -10,6 +10,7 @@
 #include "platform/config/board_yaml.h"
 #include "platform/loop/core_loop.h"
 #include "sw/explore/plan/knobs.h"
+#include "sw/runs/simulation/simulate_point.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -42,6 +43,17 @@ TEST(KeyEffects, WhatAKeyDoesNotChangeStays) {
       if (!effects.core_cycles) {
         EXPECT_EQ(cycles_of(step.board), cycles_of(board));
         EXPECT_EQ(core_cycles_key(step.board), core_cycles_key(board));
+      }
+      // Each board alone has the figures that it has behind the other one.
+      runs::PointSimulator both;
+      both(make_point(0, board, {}));
+      const Point changed_board = make_point(1, step.board, {});
+      const Figures alone = runs::PointSimulator()(changed_board);
+      const Figures behind = both(changed_board);
+      ASSERT_EQ(behind.values.size(), alone.values.size());
+      for (std::size_t i = 0; i < alone.values.size(); ++i) {
+        EXPECT_EQ(behind.values[i].path, alone.values[i].path);
+        EXPECT_EQ(behind.values[i].value, alone.values[i].value) << alone.values[i].path;
       }
       if (!effects.area) {
         EXPECT_EQ(platform::area_of(step.board).slices, platform::area_of(board).slices);

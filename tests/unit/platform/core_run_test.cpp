@@ -209,8 +209,8 @@ TEST(CoreRun, GivesTheFiguresOfTheFramesSoFar) {
   CoreLoop core(board, tables);
   for (std::uint64_t frames = 1; frames <= 3; ++frames) {
     core.run_frame();
-    EXPECT_EQ(core.statistics().frame_cycles, run_core(board, tables, frames).frame_cycles);
-    EXPECT_EQ(core.statistics().cycles, run_core(board, tables, frames).cycles);
+    EXPECT_EQ(core.counts().frame_cycles, run_core(board, tables, frames).frame_cycles);
+    EXPECT_EQ(statistics_of(board, core.counts()).cycles, run_core(board, tables, frames).cycles);
   }
 }
 
