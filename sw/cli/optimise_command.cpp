@@ -271,6 +271,14 @@ std::string command_of(const Question& question, const BoardConfig& board, const
   return command;
 }
 
+// Why there is no front, whatever the requirements are.
+std::string none_left_text(const Question& question) {
+  const bool can_lose_pixels = names(question.wishes, "frames_per_second.steady");
+  if (question.plan->conditions().empty()) return "every board loses pixels\n";
+  return can_lose_pixels ? "where leaves out every board, or those that are left lose pixels\n"
+                         : "where leaves out every board\n";
+}
+
 // Which requirement no board meets, and what the nearest board has.
 std::string empty_text(const Question& question, const explore::BoardModel& model, unsigned processes) {
   static const std::regex kForm(R"(\s*([A-Za-z_][\w.]*)\s*(<=|>=|<|>)\s*(-?[\d.]+)\s*)");
@@ -289,6 +297,7 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
       if (!alone) wishes.requirements.erase(wishes.requirements.begin() + static_cast<std::ptrdiff_t>(i));
       Search search(*question.plan, wishes, model, processes);
       if (!search.run([](const explore::SearchState&) { return !process::interrupted(); })) return text;
+      if (search.front().empty() && alone) return none_left_text(question);
       if (search.front().empty()) continue;
       const explore::Range best = search.front().front().values.front();
       const double value = is_maximum ? best.most : best.least;
@@ -304,7 +313,8 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
     }
     if (!text.empty()) return text;
   }
-  return "no board meets all requirements together\n";
+  return question.wishes.requirements.empty() ? none_left_text(question)
+                                              : "no board meets all requirements together\n";
 }
 
 // Why there is no board.

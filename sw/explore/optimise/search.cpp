@@ -263,7 +263,7 @@ Search::Space::Space(const Plan& plan, const SearchWishes& wishes, const BoardMo
   const auto add = [&](const Condition& text, std::vector<Expression>& to) {
     for (const std::string& name : names_in(text.text)) {
       if (stats::find_figure(name) != nullptr) names.insert(name);
-      if (name == kExact || name == kExactMost)
+      if (name.rfind(kExact, 0) == 0 && name != kExactLeast)  // and the numbers of the fraction
         problems.push_back(
             {text.place, fmt::format("{}: not every board has a proven rate: give {}, which is "
                                      "the proven rate where there is one",

@@ -27,16 +27,16 @@ constexpr std::array<std::string_view, 2> kUnlimitedFunctions = {"printf", "form
 // The name of a key in a condition.
 std::string parameter_of(const std::string& path) { return path == "name" ? "board.name" : path; }
 
-// The names that a condition may use, "table.column", with the numbers of their parameters.
-const std::map<std::string, int>& parameters() {
-  static const std::map<std::string, int> kParameters = [] {
-    std::map<std::string, int> all = {{kBankCount, 1}, {kSourcePath, 2}, {kFramesPath, 3}};
+// The names that a condition may use, "table.column".
+const std::set<std::string>& names_of_conditions() {
+  static const std::set<std::string> kNames = [] {
+    std::set<std::string> all = {kBankCount, kSourcePath, kFramesPath};
     for (const platform::Key& key : platform::board_keys()) {
-      if (platform::has_value(key)) all.emplace(parameter_of(key.path), static_cast<int>(all.size()) + 1);
+      if (platform::has_value(key)) all.insert(parameter_of(key.path));
     }
     return all;
   }();
-  return kParameters;
+  return kNames;
 }
 
 // The column of a name "table.column".
@@ -62,12 +62,11 @@ std::string with_nearest(const std::string& reason) {
   const std::string unknown = "no such column: ";
   if (reason.rfind(unknown, 0) != 0) return reason;
   const std::string name = reason.substr(unknown.size());
-  if (parameters().count(name) > 0) return reason + "; write the key without quotes";
+  if (names_of_conditions().count(name) > 0) return reason + "; write the key without quotes";
   if (stats::find_figure(name) != nullptr)
     return reason + "; a figure is not known before the point is simulated";
-  std::vector<std::string> known;
-  for (const auto& [key, number] : parameters()) known.push_back(key);
-  const std::string nearest = platform::nearest_path(name, known);
+  const std::set<std::string>& names = names_of_conditions();
+  const std::string nearest = platform::nearest_path(name, {names.begin(), names.end()});
   return nearest.empty() ? reason : reason + "; nearest: " + nearest;
 }
 
@@ -95,7 +94,7 @@ Conditions::Conditions(const std::vector<Condition>& conditions, const std::vect
     const bool may_be_used = all.find(without_case(column_of(name))) != std::string::npos;
     if (may_be_used) parameters_.emplace(name, static_cast<int>(parameters_.size()) + 1);
   };
-  for (const auto& [name, number] : parameters()) add(name);
+  for (const std::string& name : names_of_conditions()) add(name);
   for (const std::string& figure : figures) add(figure);
   for (const platform::Key& key : platform::board_keys()) {
     if (platform::has_value(key) && parameters_.count(parameter_of(key.path)) > 0) keys_.push_back(&key);

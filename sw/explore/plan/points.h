@@ -129,7 +129,7 @@ class Conditions {
 
   sqlite::Database database_;
   std::map<std::string, int> parameters_;   // [name whose column occurs in a text]
-  std::vector<const platform::Key*> keys_;  // of them
+  std::vector<const platform::Key*> keys_;  // those of them that are keys of a board
   std::set<std::string> functions_;         // names of the functions that a text may call
   std::string refusal_;  // the reason for which authorize() refused the text being compiled
   std::vector<Compiled> compiled_;

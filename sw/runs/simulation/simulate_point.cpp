@@ -110,13 +110,12 @@ explore::Figures PointSimulator::operator()(const explore::Point& point, bool wi
                                  : document_of(statistics_of(board, core_counts(point)), board, accuracy));
 }
 
-// Next to each other in a plan are points that differ in the key that varies fastest.
+// Points that follow each other in a plan differ in the key that varies fastest. The core may not notice it.
 const platform::CoreCounts& PointSimulator::core_counts(const explore::Point& point) {
   std::string key = explore::core_cycles_key(*point.board) + std::to_string(point.run.frames);
-  for (const platform::BoardValue& value : point.values) {  // banks that hold no buffer are counted too
-    const platform::Key* const its = platform::find_key(platform::schema_path(value.path));
-    if (value.path.rfind("ssram.", 0) == 0 && its != nullptr &&
-        explore::effects_of_key(its->path).core_cycles)
+  for (const platform::BoardValue& value : point.values) {  // banks without a buffer have figures too
+    if (value.path.rfind("ssram.", 0) != 0) continue;
+    if (explore::effects_of_key(platform::schema_path(value.path)).core_cycles)
       key += fmt::format(" {} {}", value.path, platform::value_text(value.value));
   }
   if (core_ && key == core_key_) return *core_;

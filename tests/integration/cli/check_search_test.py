@@ -47,11 +47,12 @@ minimise: [energy.memory_mj_per_frame]
 COMPUTER = """
 board: fpl2003
 run: {source: camera}
-set: {image: {width: 48, height: 32}, cameras.frame_rate_hz: 900, fpga.clock_mhz: 2}
+set: {image: {width: 48, height: 32}, cameras.frame_rate_hz: 900, fpga.clock_mhz: 2,
+      capture.fifo_trigger_words: 4, bridge.posted_words: 4}
 vary:
   matcher.disparities: [8, 16]
   matcher.window: [3, 7]
-  capture.fifo_words: [16, 24, 140]
+  capture.fifo_words: [2, 8, 140]
 placements: {banks: 2}
 maximise: [frames_per_second.steady, matcher.disparities]
 minimise: [area.slices, banks_used]
@@ -99,6 +100,12 @@ class CheckSearch(ProgramTest):
         self.agrees("dominated", "front")
 
     def test_agrees_with_searches_of_computers(self):
+        points = self.folder / "points.db"
+        plan = self.file("sweep.yaml", COMPUTER[:COMPUTER.index("placements")])
+        self.succeeds(run("sweep", plan, "--out", points))
+        with sqlite3.connect(points) as database:
+            lost = database.execute("SELECT lost_pixels > 0 FROM plain WHERE status = 'ok'").fetchall()
+        self.assertEqual(sorted(lost), [(0,)] * 4 + [(1,)] * 4)
         self.search(COMPUTER)
         process = self.check()
         self.assertEqual(process.returncode, 0, process.stdout + process.stderr)

@@ -26,6 +26,32 @@ std::vector<std::uint64_t> cycles_of(const BoardConfig& board) {
   return platform::run_core(board, platform::identity_tables(board), 2).frame_cycles;
 }
 
+// A board has the same figures alone, and behind another one, whose run of the core it may share.
+void expect_figures_behind(const BoardConfig& first, const BoardConfig& board) {
+  runs::PointSimulator both;
+  both(make_point(0, first, {}));
+  const Figures behind = both(make_point(1, board, {}));
+  const Figures alone = runs::PointSimulator()(make_point(1, board, {}));
+  ASSERT_EQ(behind.values.size(), alone.values.size());
+  for (std::size_t i = 0; i < alone.values.size(); ++i) {
+    EXPECT_EQ(behind.values[i].path, alone.values[i].path);
+    EXPECT_EQ(behind.values[i].value, alone.values[i].value) << alone.values[i].path;
+  }
+}
+
+// A bank without a buffer matters to no frame, but has figures: sdram is refreshed.
+TEST(KeyEffects, BanksWithoutABufferHaveFigures) {
+  const std::vector<std::string> sets = {"image={width: 32, height: 24}", "allocation.left_lut=none",
+                                         "allocation.right_lut=none"};
+  const BoardConfig board = platform::load_board("fpl2003", sets);
+  BoardConfig other = board;
+  other.banks.back().kind = memory::BankKind::kSdram;
+  other.banks.back().sdram.emplace();
+  ASSERT_EQ(core_cycles_key(other), core_cycles_key(board));
+  expect_figures_behind(board, other);
+  expect_figures_behind(other, board);
+}
+
 // Of each change of one key of some boards: what the key does not change stays.
 TEST(KeyEffects, WhatAKeyDoesNotChangeStays) {
   std::set<std::string> changed;
@@ -44,17 +70,7 @@ TEST(KeyEffects, WhatAKeyDoesNotChangeStays) {
         EXPECT_EQ(cycles_of(step.board), cycles_of(board));
         EXPECT_EQ(core_cycles_key(step.board), core_cycles_key(board));
       }
-      // Each board alone has the figures that it has behind the other one.
-      runs::PointSimulator both;
-      both(make_point(0, board, {}));
-      const Point changed_board = make_point(1, step.board, {});
-      const Figures alone = runs::PointSimulator()(changed_board);
-      const Figures behind = both(changed_board);
-      ASSERT_EQ(behind.values.size(), alone.values.size());
-      for (std::size_t i = 0; i < alone.values.size(); ++i) {
-        EXPECT_EQ(behind.values[i].path, alone.values[i].path);
-        EXPECT_EQ(behind.values[i].value, alone.values[i].value) << alone.values[i].path;
-      }
+      expect_figures_behind(board, step.board);
       if (!effects.area) {
         EXPECT_EQ(platform::area_of(step.board).slices, platform::area_of(board).slices);
       }
