@@ -1,82 +1,23 @@
 #pragma once
 
-#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
-#include <set>
+#include <queue>
 #include <string>
-#include <unordered_map>
+#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "sw/explore/optimise/figure_range.h"
+#include "sw/explore/optimise/front.h"
+#include "sw/explore/optimise/message.h"
 #include "sw/explore/optimise/placements.h"
+#include "sw/explore/optimise/search_space.h"
 #include "sw/explore/plan/plan.h"
-#include "sw/explore/store/store.h"
 
 namespace stereotlm::explore {
-
-struct Combination;
-
-// How the boards of a search are evaluated. The cycles of a frame include the pipeline latency.
-struct BoardModel {
-  // A lower bound for the cycles of frame 0 of the core in every placement whose buffers have the read
-  // latencies that they have here.
-  std::function<std::uint64_t(const platform::BoardConfig& board)> waitless_cycles;
-  // A lower bound for the cycles of frame 0 of the core, with what its ports need of the banks that they
-  // share.
-  std::function<std::uint64_t(const platform::BoardConfig& board)> contended_cycles;
-  // The cycles of each of frames 0..frames-1 of the core alone.
-  std::function<std::vector<std::uint64_t>(const platform::BoardConfig& board, std::uint64_t frames)>
-      frame_cycles;
-  // What follows from the board and its cycles: the figures of core_figures(), the energy only with
-  // `has_energy`. More cycles give a lower rate and more energy.
-  std::function<std::map<std::string, double>(const platform::BoardConfig& board, std::uint64_t frames,
-                                              std::uint64_t cycles, bool has_energy)>
-      figures_of_cycles;
-  // What is proven of the rate of a whole computer in the long run, if it loses no pixels. `frame_cycles`: of
-  // a turn of the lists of the core alone.
-  std::function<Range(const platform::BoardConfig& board, const std::vector<std::uint64_t>& frame_cycles)>
-      long_run_rate;
-  // All figures of a point.
-  std::function<Figures(const Point& point)> simulate;
-  // The accuracy_figures() over the pictures of the plan; a figure without a value is missing. Null if the
-  // plan has no pictures.
-  std::function<std::map<std::string, double>(const platform::BoardConfig& board)> accuracy = nullptr;
-};
-
-// The figures of BoardModel::figures_of_cycles.
-const std::vector<std::string>& core_figures();
-
-// A board of the space.
-struct BoardNumber {
-  std::uint64_t combination = 0;  // of the values of the plan
-  std::uint32_t placement = 0;
-
-  friend bool operator<(const BoardNumber& a, const BoardNumber& b) {
-    return a.combination != b.combination ? a.combination < b.combination : a.placement < b.placement;
-  }
-};
-
-// Boards of a front with the same values.
-struct FrontPoint {
-  std::vector<Range> values;  // [goal]; a value that is not exact is a rate with its uncertainty
-  std::uint64_t boards = 0;
-  std::vector<BoardNumber> first;  // at most kMostListed, in their order
-};
-inline constexpr std::size_t kMostListed = 100;
-
-// What is known about a combination of the values of the plan.
-enum class Verdict : std::uint8_t {
-  kUnknown,
-  kImpossible,  // no board: it breaks a rule, or no placement fits
-  kExcluded,    // by `where`
-  kUnmet,       // no placement can meet the requirements
-  kRuledOut,    // even with its bounds a front point is at least as good in all goals, and better in one
-  kExamined,    // by its placements
-};
 
 struct SearchState {
   std::uint64_t boards = 0;     // of the space
@@ -100,23 +41,21 @@ class Search {
   // Throws platform::BoardError if a goal or a requirement is wrong, and std::length_error if there are too
   // many combinations or placements. `plan` and `model` outlive the search.
   Search(const Plan& plan, const SearchWishes& wishes, const BoardModel& model, unsigned processes);
-  ~Search();
   Search(const Search&) = delete;
   Search& operator=(const Search&) = delete;
 
   // Results of earlier runs of the same search: they need not be simulated again.
-  using Results = std::unordered_map<std::string, std::vector<double>>;
-  void know(Results results);
+  void know(SearchResults results) { results_ = std::move(results); }
   // Those found since the last call.
-  Results take_results();
+  SearchResults take_results() { return std::exchange(new_results_, {}); }
   // The front of a search that has ended before.
-  void set_front(std::vector<FrontPoint> front) { front_ = std::move(front); }
+  void set_front(std::vector<FrontPoint> front) { front_.set_points(std::move(front)); }
 
   // `keep_going` is called several times a second; false ends the search, and run() returns false.
   bool run(const std::function<bool(const SearchState& state)>& keep_going);
 
   // The front so far, sorted by the values: the best of the first goal first, and so on.
-  const std::vector<FrontPoint>& front() const { return front_; }
+  const std::vector<FrontPoint>& front() const { return front_.points(); }
   const SearchWishes& wishes() const { return wishes_; }
   SearchState state() const;
   std::uint64_t combinations() const { return verdicts_.size(); }
@@ -167,13 +106,29 @@ class Search {
   };
   void certify(const Certificate& certificate);
   // The figures of Examined::results, of runs that are needed for more than the cycles of the core.
-  std::vector<std::string> result_names() const;
+  const std::vector<std::string>& result_names() const { return space_.result_names(); }
 
  private:
-  class Space;
-  struct Node;
-  struct Heap;
+  static constexpr std::size_t kCombinationsOfPiece = 64;  // that a process assesses together
 
+  // A combination, or some of its placements, that are not decided yet.
+  struct Node {
+    static constexpr std::uint32_t kAll = UINT32_MAX;
+
+    GoalValues best{};
+    std::uint64_t combination = 0;
+    std::uint32_t group = kAll;      // of placements
+    std::uint32_t placement = kAll;  // of the group
+    std::uint32_t boards = 0;
+
+    // Says that these placements of its group are nodes like it.
+    void put(const std::vector<std::uint32_t>& placements, Message& message) const;
+    // The order of the search: by the goals one after the other.
+    friend bool operator<(const Node& a, const Node& b) {
+      if (a.best != b.best) return a.best < b.best;
+      return std::tie(a.combination, a.group, a.placement) > std::tie(b.combination, b.group, b.placement);
+    }
+  };
   // What is found of a placement that its bounds do not rule out.
   struct Found {
     std::string fate;                          // unmet, bound, dominated, front; empty: a result is missing
@@ -184,26 +139,28 @@ class Search {
   using GetResult =
       std::function<std::vector<double>(const std::string& key, std::size_t which, bool is_short)>;
   Found find(Combination& its, const Placements::Group& group, std::uint64_t placement, const GetResult& get);
+
+  // The parts of run(). They return false if `keep_going` has.
   bool compute_accuracy(const std::function<bool()>& keep_going);
   bool assess(const std::function<bool()>& keep_going);
-  bool step(const std::function<bool()>& keep_going);
-  void add_to_front(const std::vector<Range>& values, std::uint64_t combination,
-                    const std::vector<std::uint32_t>& placements);
+  bool do_round(const std::function<bool()>& keep_going);
+  std::vector<Node> choose();
+  std::string work_on(const Node& node);
+  void examine(Combination& its, const Placements::Group& group, const Node& node,
+               const std::vector<std::uint32_t>& placements, Message& message);
+  void take(const Node& node, Message message);
   std::vector<Examined> examined(Combination& its);
-  std::vector<double> bests_of(const std::vector<Range>& values) const;
-  bool beats(const FrontPoint& point, const double* best) const;
-  bool is_dominated(const double* best) const;
 
   SearchWishes wishes_;
   unsigned processes_;
-  std::unique_ptr<Space> space_;
-  std::unique_ptr<Heap> heap_;
+  SearchResults results_;
+  SearchResults new_results_;
+  SearchSpace space_;
+  std::priority_queue<Node> nodes_;
   std::vector<Verdict> verdicts_;          // [combination]
   std::vector<double> bests_;              // [combination][goal]: of an open one, the best that it can be
   std::vector<std::uint32_t> placements_;  // [combination]
-  std::vector<FrontPoint> front_;
-  Results results_;
-  Results new_results_;
+  Front front_;
   SearchState state_;
 };
 

@@ -106,8 +106,8 @@ void SearchStore::ask(sqlite::Database& database) const {
   database.execute("RELEASE asked");
 }
 
-Search::Results SearchStore::results() const {
-  Search::Results results;
+SearchResults SearchStore::results() const {
+  SearchResults results;
   if (is_finished_) return results;
   const sqlite::Database database(path_, sqlite::Database::Access::kRead);
   for (sqlite::Statement row(database, "SELECT key, value FROM results"); row.step();) {
@@ -117,7 +117,7 @@ Search::Results SearchStore::results() const {
   return results;
 }
 
-void SearchStore::add(const Search::Results& results) const {
+void SearchStore::add(const SearchResults& results) const {
   if (results.empty()) return;
   sqlite::Database database(path_, sqlite::Database::Access::kWrite);
   database.execute("BEGIN IMMEDIATE");

@@ -39,8 +39,8 @@ class SearchStore {
 
   bool is_finished() const { return is_finished_; }
   // Of a search that is not finished.
-  Search::Results results() const;
-  void add(const Search::Results& results) const;
+  SearchResults results() const;
+  void add(const SearchResults& results) const;
   // Replaces the file by the answer.
   void finish(Search& search) const;
   // Of a finished search.

@@ -19,7 +19,7 @@
 namespace stereotlm::explore {
 namespace {
 
-constexpr int kPollMs = 20;
+constexpr int kWorkersPollMs = 20;
 
 // A number that forked processes share.
 class SharedCount {
@@ -62,7 +62,7 @@ bool do_in_processes(std::size_t count, unsigned processes,
     if (!keep_going()) return false;
     std::vector<pollfd> watched;
     for (const auto& worker : workers) watched.push_back({worker->descriptor(), POLLIN, 0});
-    const int ready = poll(watched.data(), watched.size(), kPollMs);
+    const int ready = poll(watched.data(), watched.size(), kWorkersPollMs);
     if (ready < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
     for (std::size_t i = 0; ready > 0 && i < watched.size(); ++i) {
       if (watched[i].revents == 0) continue;
