@@ -104,8 +104,8 @@ std::string schema_path(const std::string& path);
 // is nearer than most wrong names in the right section.
 std::string nearest_path(const std::string& path, const std::vector<std::string>& known);
 
-// The message for an unknown path: "unknown key; nearest known key: PATH", or a text that says that no known
-// key is near.
+// The message for an unknown path: "unknown key; nearest known key: PATH", or the keys of its section, or a
+// text that says that no known key is near.
 std::string unknown_key_text(const std::string& path);
 
 // A cost as a board file has it: "sad", "{census: 5}".

@@ -11,6 +11,12 @@ namespace {
 
 std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
+// The section of a path; empty for one without.
+std::string section_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
 // likely_distance() of two paths, without the sections with which both begin.
 std::optional<std::size_t> likely_path_distance(std::string_view path, std::string_view known) {
   for (std::size_t dot = path.find('.'); dot != std::string_view::npos; dot = path.find('.')) {
@@ -123,8 +129,15 @@ std::string nearest_path(const std::string& path, const std::vector<std::string>
 
 std::string unknown_key_text(const std::string& path) {
   const std::string nearest = nearest_key(path);
-  return nearest.empty() ? "unknown key, and no known key is near"
-                         : "unknown key; nearest known key: " + nearest;
+  const bool is_section = find_key(schema_path(nearest)) == nullptr;
+  if (!nearest.empty() && (!is_section || section_of(nearest) == section_of(path)))
+    return "unknown key; nearest known key: " + nearest;
+  std::string section = section_of(path);
+  while (!section.empty() && child_keys(schema_path(section)).empty()) section = section_of(section);
+  if (section.empty()) section = nearest;
+  if (section.empty()) return "unknown key, and no known key is near";
+  return fmt::format("unknown key; keys of {}: {}", section,
+                     fmt::join(child_keys(schema_path(section)), ", "));
 }
 
 }  // namespace stereotlm::platform

@@ -36,9 +36,20 @@ TEST(NearestKey, IsNamedWhereItCanBeMeant) {
   };
   for (const auto& [typed, key] : meant)
     EXPECT_EQ(unknown_key_text(typed), "unknown key; nearest known key: " + key) << typed;
-  for (const std::string typed :
-       {"matcher.size", "x", "", "image.x", "image.", "matcher.filter.x", "matcher.cost.x", "größe", "<<",
-        "ssram.banks.", "ssram.banks.b.size", "matcher.a_key_that_is_longer_than_any_other"})
+  const std::string of_image = "image: width, height";
+  const std::string of_cameras = "cameras: frame_rate_hz, trigger";
+  const std::pair<std::string, std::string> in_section[] = {
+      {"image.x", of_image},
+      {"image.", of_image},
+      {"image.size.x", of_image},
+      {"camera.fps", of_cameras},
+      {"cameras.fps", of_cameras},
+      {"matcher.filter.x", "matcher.filter: kernel, shift"},
+      {"matcher.cost.x", "matcher.cost: census"},
+  };
+  for (const auto& [typed, keys] : in_section)
+    EXPECT_EQ(unknown_key_text(typed), "unknown key; keys of " + keys) << typed;
+  for (const std::string typed : {"x", "", "größe", "<<"})
     EXPECT_EQ(unknown_key_text(typed), "unknown key, and no known key is near") << typed;
 }
 

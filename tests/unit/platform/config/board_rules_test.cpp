@@ -495,7 +495,8 @@ TEST(BoardCost, IsAWordOrACensusOfItsSize) {
         "board.yaml:2:18: matcher.cost.census:5 = (nothing): a blank is missing after the colon: census: 5"},
        // Neither another key nor a colon at the end is a forgotten blank.
        {cost_board("{ssd:5}"),
-        missing + "\nboard.yaml:2:18: matcher.cost.ssd:5 = (nothing): unknown key, and no known key is near"},
+        missing +
+            "\nboard.yaml:2:18: matcher.cost.ssd:5 = (nothing): unknown key; keys of matcher.cost: census"},
        {cost_board("{census:5: 3}"), missing + "\nboard.yaml:2:18: matcher.cost.census:5 = 3: unknown key; "
                                                "nearest known key: matcher.cost.census"},
        {cost_board("{census: 1}"), "board.yaml:2:26: " + census + "1: 3, 5 or 7"},
@@ -505,7 +506,7 @@ TEST(BoardCost, IsAWordOrACensusOfItsSize) {
         "board.yaml:2:26: " + census + "\"5\": not an integer (decimal digits, not in quotes); 3, 5 or 7"},
        {cost_board("{}"), missing},
        {cost_board("{census: 5, ssd: 1}"),
-        "board.yaml:2:29: matcher.cost.ssd = 1: unknown key, and no known key is near"},
+        "board.yaml:2:29: matcher.cost.ssd = 1: unknown key; keys of matcher.cost: census"},
        {cost_board("{census: 5, census: 7}"),
         "board.yaml:2:29: " + census + "7: repeated key, first at 2:18"},
        {cost_board("sad"),
