@@ -65,8 +65,9 @@ YamlNode section_node(const std::string& path, const BoardConfig& board) {
 
 // The value as `--set` takes it.
 std::string set_text(const Key& key, const BoardConfig& board) {
-  const bool is_table = key.path == key_of(Buffer::kLeftLut) || key.path == key_of(Buffer::kRightLut);
-  return is_table ? flow_text(key.write(board)) : value_text(value_of(key, board));
+  const bool is_flow =
+      key.path == "name" || key.path == key_of(Buffer::kLeftLut) || key.path == key_of(Buffer::kRightLut);
+  return is_flow ? flow_text(key.write(board)) : value_text(value_of(key, board));
 }
 
 // The values of `--set` that give the banks of `to` to a board with the banks of `from`.

@@ -229,14 +229,16 @@ double rate_of_turns(const BoardConfig& board, const FrameAccesses& accesses) {
   const double capture = static_cast<double>(camera.last_pixel_ps()) / cycle_ps;  // all in cycles
   const double picture = board.image.width / 4.0 * board.image.height *
                          local_bus_cycles_a_word(board, board.bridge.local_clock_mhz);
-  // The time from one capture into a buffer to the next one, if so many cycles pass between them.
+  const double core_hz = board.fpga.clock_mhz * 1e6;
+  // From one capture into a buffer to the next one, if so many cycles pass between them: periods of `tick_hz`.
+  const double tick_hz = is_free_running ? board.cameras.frame_rate_hz : core_hz;
   const auto between_captures = [&](double cycles) {
-    const double period = static_cast<double>(camera.frame_ps(1)) / cycle_ps;
-    return is_free_running ? std::ceil(cycles / period - 1e-9) * period : cycles;
+    return is_free_running ? std::ceil(cycles * tick_hz / core_hz - 1e-9) : cycles;
   };
   const std::uint64_t turn = allocation_period_frames(board);
   double one_after_another = 0;
-  double of_inputs = 0;
+  double of_copies = 0;
+  double of_captures = 0;  // periods
   double of_outputs = 0;
   for (std::uint64_t frame = 0; frame < turn; ++frame) {
     const auto alone = static_cast<double>(least_frame_cycles(board, accesses, frame));
@@ -253,15 +255,17 @@ double rate_of_turns(const BoardConfig& board, const FrameAccesses& accesses) {
       longest = std::max(longest, static_cast<double>(of_frame.cycles(bank)));
     const double moved = (inputs == 1 ? 2 * picture : 0) + (outputs == 1 ? picture : 0);
     one_after_another += std::max(longest + moved, inputs == 1 && !to_host ? alone + capture : 0);
-    of_inputs += to_host ? 2 * picture + alone : between_captures(capture + alone);
+    of_copies += 2 * picture + alone;
+    of_captures += between_captures(capture + alone);
     of_outputs += alone + picture;
   }
   const auto frames = static_cast<double>(turn);
-  double longest = std::max({one_after_another, of_inputs / static_cast<double>(inputs),
-                             of_outputs / static_cast<double>(outputs)});
-  if (to_host)
-    longest = std::max(longest, frames * between_captures(capture + 2 * picture) / board.capture.host_frames);
-  return board.fpga.clock_mhz * 1e6 * frames / longest;
+  const double buffers_in = static_cast<double>(inputs);
+  const double longest = std::max(
+      {one_after_another, to_host ? of_copies / buffers_in : 0, of_outputs / static_cast<double>(outputs)});
+  const double of_cameras = to_host ? board.capture.host_frames / between_captures(capture + 2 * picture)
+                                    : frames * buffers_in / of_captures;
+  return std::min(core_hz * frames / longest, tick_hz * of_cameras);
 }
 
 // The rows of a bank of sdram that accesses to these groups touch: bit r for row r.

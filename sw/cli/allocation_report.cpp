@@ -64,10 +64,10 @@ std::optional<double> open_rate(const AllocationReport& report, const BestOfAll&
   return report.open_bound;
 }
 
-// The fewest decimals, at least three, that show a difference of two rates.
+// The fewest decimals, 3 to 12, that show a difference of two rates.
 int decimals_of(double one, double other) {
   int decimals = 3;
-  while (fmt::format("{:.{}f}", one, decimals) == fmt::format("{:.{}f}", other, decimals)) ++decimals;
+  while (decimals < 12 && fmt::format("{:.{}f}", one, decimals) == fmt::format("{:.{}f}", other, decimals)) ++decimals;
   return decimals;
 }
 

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -41,7 +43,7 @@ constexpr std::size_t kMostPoints = 40;  // of the front that the text lists
 
 // "90s", "5min", "2h": seconds; nullopt for any other text.
 std::optional<double> seconds_of(const std::string& text) {
-  static const std::regex kForm(R"((\d+(?:\.\d+)?)(s|min|h))");
+  static const std::regex kForm(R"((\d{1,9}(?:\.\d{1,9})?)(s|min|h))");
   std::smatch parts;
   if (!std::regex_match(text, parts, kForm)) return std::nullopt;
   return std::stod(parts[1]) * (parts[2] == "s" ? 1 : parts[2] == "min" ? 60 : 3600);
@@ -96,18 +98,19 @@ struct OptimiseOptions : Options {
 struct Question {
   std::optional<explore::Plan> plan;
   explore::SearchWishes wishes;
-  std::string text;         // of the plan; of a board the plan that is made from it
-  std::string board_words;  // a board, as words of a command line
-  BoardConfig board;        // that board
+  std::string text;               // of the plan; of a board the plan that is made from it
+  std::string varied;             // of a board: what the plan varies, as text
+  std::string board_name;         // a preset or a board file
+  std::vector<std::string> sets;  // of that board
+  BoardConfig board;              // the board with them
+  std::string calibration;        // its path; empty: none
 };
 
-// Whether the file is a plan: a map with a key that only plans have. A file that cannot be read as YAML is
-// taken for a board, which reports why.
-bool is_plan(const std::string& name, const std::string* text) {
-  if (!platform::is_board_file(name)) return false;
+// Whether this is the text of a plan: a map with a key that only plans have. A text that is no YAML is taken
+// for a board, which reports why.
+bool is_plan(const std::string& text) {
   try {
-    const platform::YamlNode tree = platform::parse_yaml(
-        text != nullptr ? *text : platform::read_text_file(name, "plan"), platform::Place::kBoard);
+    const platform::YamlNode tree = platform::parse_yaml(text, platform::Place::kBoard);
     constexpr std::array kKeys = {"board", "vary", "zip", "placements", "maximise", "minimise", "require"};
     return tree.is_map() && std::any_of(kKeys.begin(), kKeys.end(),
                                         [&](const char* key) { return tree.find(key) != nullptr; });
@@ -124,57 +127,91 @@ bool names(const explore::SearchWishes& wishes, const std::string& figure) {
          std::any_of(wishes.requirements.begin(), wishes.requirements.end(), has);
 }
 
-// Whether a goal or a condition names a figure that only a whole computer has.
-bool names_computer(const OptimiseOptions& options) {
+// Whether a goal or a condition of the options names one of these.
+bool names(const OptimiseOptions& options, std::initializer_list<const char*> figures) {
   for (const Option* const option : {&options.requirements, &options.maxima, &options.minima}) {
     for (const std::string& text : option->texts()) {
-      for (const char* const figure : {"frames_per_second.steady", "frames_per_second.system", "lost_pixels"})
+      for (const char* const figure : figures)
         if (text.find(figure) != std::string::npos) return true;
     }
   }
   return false;
 }
 
-// A plan that varies the usual knobs of a board: those with which the paper's board and its relatives differ.
-std::string plan_of_board(const std::string& name, const BoardConfig& board, const OptimiseOptions& options) {
-  const std::string source = options.source.is_given() ? options.source.text()
-                             : names_computer(options) ? "camera"
-                                                       : "preloaded";
-  std::string text = fmt::format("board: {}\nrun: {{source: {}}}\n", files::shell_word(name), source);
-  const int disparities = board.matcher.disparities;
-  text += "vary:\n";
-  text += fmt::format("  matcher.units: [all, {}, {}]\n", (disparities + 1) / 2, (disparities + 3) / 4);
-  text += "  matcher.rows: [1, 2, 4]\n  fpga.lanes: [1, 2, 4]\n  matcher.fetch: [column, line_buffer]\n";
-  text += "  fpga.pixel_cache: [none, word]\n  fpga.lane_fifo_slots: [4, 8, 16]\n";
-  if (board.allocation.left_lut && board.allocation.right_lut) text += "  fpga.tables: [separate, joint]\n";
-  text += fmt::format("placements: {{banks: {}}}\n",
-                      options.banks.is_given() ? options.banks.text() : std::to_string(board.banks.size()));
-  return text;
+// Whether one of them is a figure that only a whole computer has.
+bool names_computer(const OptimiseOptions& options) {
+  return names(options, {"frames_per_second.steady", "frames_per_second.system", "lost_pixels"});
+}
+
+// Makes the plan that varies the usual knobs of a board: those with which the paper's board and its relatives
+// differ. A knob that `--set` names keeps its value.
+void vary_knobs(const OptimiseOptions& options, Question& question) {
+  const BoardConfig& board = question.board;
+  const bool has_computer =
+      options.source.is_given() ? options.source.text() == "camera" : names_computer(options);
+  std::vector<std::string> units = {"all"};
+  for (const int folds : {2, 3, 4}) {
+    const std::string number = std::to_string((board.matcher.disparities + folds - 1) / folds);
+    if (number != units.back() && folds <= board.matcher.disparities) units.push_back(number);
+  }
+  std::vector<std::pair<std::string, std::string>> knobs = {
+      {"matcher.units", fmt::format("{}", fmt::join(units, ", "))},
+      {"matcher.rows", "1, 2, 4"},
+      {"fpga.lanes", "1, 2, 4"},
+      {"matcher.fetch", "column, line_buffer"},
+      {"fpga.pixel_cache", "none, word"},
+      {"fpga.lane_fifo_slots", "4, 8, 16"}};
+  if (board.allocation.left_lut && board.allocation.right_lut)
+    knobs.emplace_back("fpga.tables", "separate, joint");
+  std::string vary;
+  for (const auto& [key, values] : knobs) {
+    const bool is_set =
+        std::any_of(question.sets.begin(), question.sets.end(),
+                    [&key = key](const auto& set) { return set.compare(0, key.size() + 1, key + "=") == 0; });
+    if (is_set) continue;
+    vary += fmt::format("  {}: [{}]\n", key, values);
+    question.varied += fmt::format("{}: {}; ", key, values);
+  }
+  const std::string banks =
+      options.banks.is_given() ? options.banks.text() : std::to_string(board.banks.size());
+  question.varied +=
+      fmt::format("all placements of the buffers in at most {} bank{}", banks, banks == "1" ? "" : "s");
+  question.text = fmt::format("run: {{source: {}{}}}\n{}{}placements: {{banks: {}}}\n",
+                              has_computer ? "camera" : "preloaded",
+                              has_computer && names(options, {"energy."}) ? ", frames: 120" : "",
+                              vary.empty() ? "" : "vary:\n", vary, banks);
 }
 
 Question question_of(const OptimiseOptions& options) {
   Question question;
   const std::string& name = options.plan.text();
   const std::string* const sent = sent_content(options.sent, "plan.yaml", name);
-  const bool has_plan = is_plan(name, sent);
+  std::optional<std::string> content;
+  if (sent != nullptr) content = *sent;
+  process::attempt_or_refuse("", [&] {
+    if (!content && platform::is_board_file(name)) content = platform::read_text_file(name, "plan or board");
+  });
+  const bool has_plan = content && is_plan(*content);
   if (has_plan && options.sets.is_given()) process::refuse("--set: of a board; a plan has the section set");
   if (has_plan && options.source.is_given())
     process::refuse("--source: of a board; a plan says it in run.source");
   process::attempt_or_refuse("", [&] {
+    question.board_name = name;
+    question.sets = options.sets.texts();
+    question.calibration = options.calibration.text();
     if (has_plan) {
-      question.text = sent != nullptr ? *sent : platform::read_text_file(name, "plan");
+      question.text = *content;
       question.plan = explore::Plan::load(name, "", &question.text);
-      question.board_words = files::shell_word(question.plan->board());
-      question.board = platform::BoardDraft(question.plan->board()).read_with_problems().board;
+      question.board_name = question.plan->board();
+      question.board = platform::BoardDraft(question.board_name).read_with_problems().board;
+      if (question.calibration.empty()) question.calibration = question.plan->calibration();
     } else {
-      const BoardConfig board = platform::load_board(name, options.sets.texts());
-      question.text = plan_of_board(name, board, options);
-      const std::string file = platform::to_yaml(board);
+      platform::BoardDraft draft(name, content ? &*content : nullptr);
+      for (const std::string& set : question.sets) draft.set(set);
+      question.board = draft.read();
+      vary_knobs(options, question);
+      const std::string file = platform::to_yaml(question.board);
       question.plan = explore::Plan::load(name, "board.yaml", &question.text, &file);
-      question.board_words = files::shell_word(name);
-      for (const std::string& set : options.sets.texts())
-        question.board_words += " --set " + files::shell_word(set);
-      question.board = board;
     }
   });
   question.wishes = question.plan->wishes();
@@ -222,7 +259,7 @@ std::string front_text(Search& search, const explore::Plan& plan) {
   const auto& front = search.front();
   const std::size_t listed = std::min(front.size(), kMostPoints);
   std::vector<std::vector<std::string>> values;  // of the keys that vary, in the first boards
-  for (std::size_t i = 0; i < listed; ++i)
+  for (std::size_t i = 0; i < front.size(); ++i)
     values.push_back(plan.varied_values(front[i].first.front().combination));
   const std::vector<std::string> keys = plan.varied();
   std::string same;
@@ -258,17 +295,32 @@ std::string front_text(Search& search, const explore::Plan& plan) {
     text += line + '\n';
   }
   if (front.size() > listed) text += fmt::format("and {} more\n", front.size() - listed);
-  if (!same.empty()) text += paragraph("the same on all: ", 2, same);
+  if (!same.empty()) {
+    const bool is_one = front.size() == 1;
+    const char* const which = is_one && front[0].boards == 1 ? "it has "
+                              : is_one                       ? "the first of them has "
+                                                             : "the first of each row has ";
+    text += paragraph(which, 2, same);
+  }
   return text;
 }
 
 // The command that explains a board further.
 std::string command_of(const Question& question, const BoardConfig& board, const explore::PointRun& run) {
-  std::string command = "stereotlm explain " + question.board_words;
-  if (!run.camera) command += " --source preloaded";
-  for (const std::string& set : platform::sets_between(question.board, board))
-    command += " --set " + files::shell_word(set);
-  return command;
+  std::vector<std::string> words = {"stereotlm", "explain", question.board_name};
+  const std::vector<std::string> changes = platform::sets_between(question.board, board);
+  const auto is_changed = [&](const std::string& set) {
+    const std::string path = set.substr(0, set.find('=') + 1);
+    return std::any_of(changes.begin(), changes.end(),
+                       [&](const std::string& change) { return change.rfind(path, 0) == 0; });
+  };
+  for (const std::string& set : question.sets) {
+    if (!is_changed(set)) words.insert(words.end(), {"--set", set});
+  }
+  if (!run.camera) words.insert(words.end(), {"--source", "preloaded"});
+  if (!question.calibration.empty()) words.insert(words.end(), {"--calibration", question.calibration});
+  for (const std::string& set : changes) words.insert(words.end(), {"--set", set});
+  return files::shell_command(words);
 }
 
 // Why there is no front, whatever the requirements are.
@@ -281,13 +333,14 @@ std::string none_left_text(const Question& question) {
 
 // Which requirement no board meets, and what the nearest board has.
 std::string empty_text(const Question& question, const explore::BoardModel& model, unsigned processes) {
-  static const std::regex kForm(R"(\s*([A-Za-z_][\w.]*)\s*(<=|>=|<|>)\s*(-?[\d.]+)\s*)");
+  static const std::regex kForm(R"(\s*([A-Za-z_][\w.]*)\s*(<=|>=|<|>)\s*(-?\d+(?:\.\d+)?)\s*)");
+  constexpr std::size_t kMostBytes = 200;  // std::regex takes stack for each
   std::string text;
   for (const bool alone : {true, false}) {
     for (std::size_t i = 0; i < question.wishes.requirements.size(); ++i) {
       const std::string& condition = question.wishes.requirements[i].text;
       std::smatch parts;
-      if (!std::regex_match(condition, parts, kForm)) continue;
+      if (condition.size() > kMostBytes || !std::regex_match(condition, parts, kForm)) continue;
       explore::SearchWishes wishes = question.wishes;
       const bool is_maximum = parts[2].str()[0] == '>';
       explore::Condition goal = question.wishes.requirements[i];
@@ -296,7 +349,11 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
       if (alone) wishes.requirements.clear();
       if (!alone) wishes.requirements.erase(wishes.requirements.begin() + static_cast<std::ptrdiff_t>(i));
       Search search(*question.plan, wishes, model, processes);
-      if (!search.run([](const explore::SearchState&) { return !process::interrupted(); })) return text;
+      try {
+        if (!search.run([](const explore::SearchState&) { return !process::interrupted(); })) return text;
+      } catch (const std::runtime_error&) {
+        continue;  // it is a word on some boards, and no goal
+      }
       if (search.front().empty() && alone) return none_left_text(question);
       if (search.front().empty()) continue;
       const explore::Range best = search.front().front().values.front();
@@ -322,7 +379,7 @@ std::string no_board_text(Search& search) {
   return fmt::format("no combination is a board; the first: {}\n", search.board({0, 0}).reason);
 }
 
-std::string judgement_text(const Search::Judgement& judgement, const Search& search) {
+std::string judgement_text(const Search::Judgement& judgement, const Search& search, bool is_proven) {
   if (!judgement.refused.empty()) return "is refused: " + judgement.refused + '\n';
   if (!judgement.unmet.empty()) return "does not meet " + judgement.unmet + '\n';
   const auto values_text = [&](const std::vector<explore::Range>& values) {
@@ -333,10 +390,41 @@ std::string judgement_text(const Search::Judgement& judgement, const Search& sea
     return text;
   };
   const std::string its = (judgement.is_bound ? "can at best have " : "has ") + values_text(judgement.values);
-  if (!judgement.dominated_by) return fmt::format("is one of the best: {}\n", its);
+  if (!judgement.dominated_by) {
+    const auto& front = search.front();
+    const bool is_on_front = std::any_of(front.begin(), front.end(), [&](const explore::FrontPoint& point) {
+      return std::equal(point.values.begin(), point.values.end(), judgement.values.begin(),
+                        [](const auto& a, const auto& b) { return a.least == b.least && a.most == b.most; });
+    });
+    const char* const verdict = is_proven && is_on_front ? "is one of the best"
+                                : is_proven ? "is no board of the plan, and none of those beats it"
+                                            : "is not beaten so far";
+    return fmt::format("{}: {}\n", verdict, its);
+  }
   const explore::FrontPoint& better = search.front()[*judgement.dominated_by];
   return fmt::format("{}; {} board{} the better {}\n", its, better.boards,
                      better.boards == 1 ? " has" : "s have", values_text(better.values));
+}
+
+// Whether the first boards of the rows do not fit their FPGA.
+std::string too_large_text(Search& search) {
+  std::map<std::string, std::size_t> rows;  // by the figure that is above 100 %
+  for (const explore::FrontPoint& point : search.front()) {
+    for (const auto& [figure, value] :
+         explore::figures_without_simulation(*search.board(point.first.front()).board)) {
+      const std::string percent = "_percent";
+      const bool is_share = figure.size() > percent.size() &&
+                            figure.compare(figure.size() - percent.size(), percent.size(), percent) == 0;
+      if (is_share && value.least > 100) ++rows[figure];
+    }
+  }
+  std::string text;
+  for (const auto& [figure, count] : rows)
+    text += fmt::format("{} too large for the FPGA: require {} <= 100\n",
+                        search.front().size() == 1 ? "the first of them is"
+                                                   : fmt::format("the first boards of {} rows are", count),
+                        figure);
+  return text;
 }
 
 // How a search has ended.
@@ -345,6 +433,8 @@ struct Answer {
   const Question& question;
   bool is_proven = true;
   std::uint64_t boards = 0;
+  bool is_counted = true;
+  Search::Impossible impossible = {};
   double seconds = 0;
 };
 
@@ -372,8 +462,17 @@ nlohmann::ordered_json document_of(const Answer& answer) {
 std::string text_of(const Answer& answer, const explore::BoardModel& model, unsigned processes) {
   Search& search = answer.search;
   const explore::Plan& plan = *answer.question.plan;
-  std::string text =
-      fmt::format("{} boards in {} combinations of values\n", answer.boards, search.combinations());
+  const std::uint64_t combinations = search.combinations();
+  std::string text = fmt::format("{} board{} in {} combination{} of values{}\n", answer.boards,
+                                 answer.boards == 1 ? "" : "s", combinations, combinations == 1 ? "" : "s",
+                                 answer.is_counted ? "" : ", as far as they are counted");
+  if (!answer.question.varied.empty())
+    text +=
+        paragraph(plan.run().camera ? "the whole computer; " : "the core alone; ", 2, answer.question.varied);
+  if (answer.impossible.count > 0 && answer.boards > 0)
+    text += paragraph(fmt::format("{} combination{} no board; the first: ", answer.impossible.count,
+                                  answer.impossible.count == 1 ? " is" : "s are"),
+                      2, search.board({answer.impossible.first, 0}).reason);
   if (search.front().empty()) {
     text += !answer.is_proven    ? "no board so far\n"
             : answer.boards == 0 ? no_board_text(search)
@@ -383,7 +482,10 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
     if (search.front().size() == 1) {
       const Search::Board board = search.board(search.front().front().first.front());
       text += "the first of them: " + command_of(answer.question, *board.board, board.run) + '\n';
+    } else {
+      text += "--json has the command of the first board of each row\n";
     }
+    text += too_large_text(search);
   }
   text += answer.is_proven
               ? "proven: every other board was simulated, or is ruled out by a bound\n"
@@ -420,7 +522,13 @@ int optimise(const OptimiseOptions& options) {
   std::optional<platform::BoardDraft> asked;
   process::attempt_or_refuse("--why ", [&] {
     if (options.why.is_given()) asked = plan.base();
+    std::vector<platform::Diagnostic> problems_of_values;
     for (const std::string& set : options.why.texts()) asked->set(set);
+    if (!asked) return;
+    for (const platform::Diagnostic& problem : asked->read_with_problems().problems) {
+      if (!problem.is_between_keys) problems_of_values.push_back({"--why", problem.text});
+    }
+    if (!problems_of_values.empty()) throw platform::BoardError(problems_of_values);
   });
   std::optional<explore::StoreLock> lock;
   std::optional<explore::SearchStore> store;
@@ -436,10 +544,14 @@ int optimise(const OptimiseOptions& options) {
   if (store && store->is_finished()) {
     search->set_front(store->front(question.wishes.goals.size()));
     answer.boards = store->boards();
+    answer.impossible = store->impossible();
   } else {
     answer.is_proven = run_search(*search, store ? &*store : nullptr, question.wishes.goals.size() == 1,
                                   seconds_of(options.within.text()));
     answer.boards = search->state().boards;
+    answer.is_counted = search->state().is_counted;
+    answer.impossible = search->impossible();
+    if (lock) lock->check();
     if (store && answer.is_proven) store->finish(*search);
   }
   answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -448,7 +560,9 @@ int optimise(const OptimiseOptions& options) {
   const auto& sets = options.why.texts();
   const bool places = std::none_of(sets.begin(), sets.end(),
                                    [](const std::string& set) { return set.rfind("allocation", 0) == 0; });
-  if (asked) text += "this board " + judgement_text(search->judge(*asked, plan.run(), places), *search);
+  if (asked)
+    text +=
+        "this board " + judgement_text(search->judge(*asked, plan.run(), places), *search, answer.is_proven);
   process::print(text);
   if (!process::interrupted()) return kDone;
   return interrupted(resume_text(store.has_value()));

@@ -16,11 +16,18 @@ using Clock = std::chrono::steady_clock;
 }  // namespace
 
 std::string progress_text(const explore::SearchState& state, bool has_gap, double seconds) {
-  std::string text = fmt::format("{:.3g} boards: {} open, {} simulated", static_cast<double>(state.boards),
-                                 state.open, state.simulated);
-  if (state.has_best && has_gap)
+  constexpr std::uint64_t kMostDigits = 10'000'000;
+  const std::string boards = state.boards < kMostDigits
+                                 ? std::to_string(state.boards)
+                                 : fmt::format("{:.3g}", static_cast<double>(state.boards));
+  std::string text = fmt::format("{} board{}{}: {} open, {} simulated", boards, state.boards == 1 ? "" : "s",
+                                 state.is_counted ? "" : " counted", state.open, state.simulated);
+  if (state.has_best && has_gap && !std::isfinite(state.bound)) {
+    text += fmt::format(", best {:.6g}, no bound", state.best);
+  } else if (state.has_best && has_gap) {
     text += fmt::format(", best {:.6g}, bound {:.6g}, gap {:.2f} %", state.best, state.bound,
                         state.best == 0 ? 0 : 100 * std::abs(state.bound / state.best - 1));
+  }
   return text + fmt::format(", {:.0f} s", seconds);
 }
 

@@ -181,7 +181,11 @@ class Check:
         self.goals = [(figure, 1 if aim == "maximise" else -1)
                       for figure, aim in self.rows("SELECT figure, aim FROM goals ORDER BY goal")]
         self.requirements = [text for text, in self.rows("SELECT condition FROM requirements")]
-        self.asks_steady = STEADY in " ".join([*self.requirements, *(figure for figure, _ in self.goals)])
+        asked = " ".join([*self.requirements, *(figure for figure, _ in self.goals)])
+        has_computer = self.run.get("source") == "camera" or any("run.source" in axis for axis in self.axes)
+        self.asks_steady = STEADY in asked
+        asks_for_losses = "lost_pixels" in asked or "dropped_pixels" in asked
+        self.asks_whole_pictures = has_computer and (self.asks_steady or not asks_for_losses)
         self.front = collections.defaultdict(list)  # of each point, of each goal the least and the most
         for point, *ends in self.rows("SELECT point, least, most FROM front_values ORDER BY point, goal"):
             self.front[point].append(tuple(ends))
@@ -272,7 +276,7 @@ class Check:
 
     def meets(self, row):
         """Whether it is so; None if its run leaves that open."""
-        if self.asks_steady and row["lost_pixels"]:
+        if self.asks_whole_pictures and row["lost_pixels"]:
             return False
         both = {all(computed(text, each) for text in self.requirements) for each in self.rates(row)}
         return both.pop() if len(both) == 1 else None
@@ -412,7 +416,9 @@ class Check:
                                 and not name.startswith(("area.", "accuracy."))
                                 and name not in ("banks_used", "pins")})
                 if self.asks_steady:
-                    names = sorted({*names, UNCERTAINTY, EXACT, LEAST, MOST, "lost_pixels"})
+                    names = sorted({*names, UNCERTAINTY, EXACT, LEAST, MOST})
+                if self.asks_whole_pictures:
+                    names = sorted({*names, "lost_pixels"})
                 has_sdram = any("sdram" in kind for kind in self.placements(at).kinds)
                 is_full = (not is_core or set(names) - {"cycles", RATE, ENERGY}
                            or ENERGY in names and has_sdram)

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <regex>
 
 #include "platform/config/board_area.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/buffer_layout.h"
 #include "platform/yaml/words.h"
+#include "sw/stats/figures.h"
 
 namespace stereotlm::explore {
 namespace {
@@ -44,6 +46,63 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
+std::string name_of_bank(const std::string& text) {
+  for (const std::string& name : names_in(text)) {
+    const std::string plain = without_case(name);
+    for (const char* const section : {"allocation", "banks"}) {
+      if (plain == section || platform::is_below(plain, section)) return name;
+    }
+  }
+  return "";
+}
+
+namespace {
+
+// The names, numbers and operators of an SQL text.
+std::vector<std::string> tokens_of(const std::string& text) {
+  std::vector<std::string> tokens;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    const auto is_of_word = [&] {
+      const auto c = static_cast<unsigned char>(text[end]);
+      return std::isalnum(c) != 0 || c == '_' || c == '.';
+    };
+    while (end < text.size() && is_of_word()) ++end;
+    if (end == at)
+      end += std::strchr("<>=!|-/", text[at]) != nullptr &&
+                     std::strchr("<>=|-*", at + 1 < text.size() ? text[at + 1] : ' ') != nullptr
+                 ? 2
+                 : 1;
+    if (std::isspace(static_cast<unsigned char>(text[at])) == 0) tokens.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return tokens;
+}
+
+// Whether it is sure that an expression rises all the way with this figure, or falls: the figure is in it
+// once, with numbers, other names, + - * /, brackets, comparisons, round(), min() and max(). A quotient may
+// jump at one place, which range_along() sees. So what it is divided by has the figure only if none of the
+// last four is there.
+bool is_monotone(const std::string& text, const std::string& figure) {
+  static const std::set<std::string> kSigns = {"+", "-", "*", "/", "(", ")", ","};
+  static const std::set<std::string> kSteps = {"round", "min", "max", "<", "<=", ">", ">="};
+  const std::vector<std::string> tokens = tokens_of(text);
+  bool has_step = false;
+  bool divides = false;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const std::string& token = tokens[i];
+    const bool is_name = stats::find_figure(token) != nullptr || platform::find_key(token) != nullptr;
+    const bool is_number = std::isdigit(static_cast<unsigned char>(token[0])) != 0;
+    const bool is_step = kSteps.count(token) > 0;
+    if (!is_name && !is_number && !is_step && kSigns.count(token) == 0) return false;
+    has_step = has_step || is_step;
+    divides = divides || (i > 0 && tokens[i - 1] == "/" && !is_number && (!is_name || token == figure));
+  }
+  return std::count(tokens.begin(), tokens.end(), figure) == 1 && !(has_step && divides);
+}
+
+}  // namespace
+
 // FIGURE < NUMBER, and the like.
 struct Expression::Comparison {
   std::string figure;
@@ -52,8 +111,10 @@ struct Expression::Comparison {
 
   static std::unique_ptr<Comparison> read(const std::string& text, const std::set<std::string>& figures) {
     static const std::regex kForm(R"(\s*([A-Za-z_][\w.]*)\s*(<=|>=|==|=|<|>)\s*(-?\d+(?:\.\d+)?)\s*)");
+    constexpr std::size_t kMostBytes = 200;  // std::regex takes stack for each
     std::smatch parts;
-    if (!std::regex_match(text, parts, kForm) || figures.count(parts[1]) == 0) return nullptr;
+    if (text.size() > kMostBytes || !std::regex_match(text, parts, kForm) || figures.count(parts[1]) == 0)
+      return nullptr;
     return std::make_unique<Comparison>(Comparison{parts[1], parts[2], std::stod(parts[3])});
   }
 
@@ -81,8 +142,8 @@ Expression::Expression(const Condition& condition, const std::set<std::string>& 
   is_figure_ = figures.count(text) > 0;
   for (const std::string& name : names_in(text)) {
     if (figures.count(name) > 0) used_.insert(name);
-    if (name.rfind("allocation.", 0) == 0 || name.rfind("banks.", 0) == 0) name_of_bank_ = name;
   }
+  name_of_bank_ = explore::name_of_bank(text);
   comparison_ = Comparison::read(text, figures);
   if (key_ == nullptr && !is_figure_ && comparison_ == nullptr)
     Conditions({condition_}, {used_.begin(), used_.end()});  // throws if it is no expression
@@ -121,8 +182,9 @@ std::optional<double> Expression::computed(const Known& known) {
   return sql_->number(known.board, std::move(values));
 }
 
-// What it can be if this figure alone is not exact.
-Range Expression::range_along(const Known& known, const std::string& figure) {
+// The values at places of the range of this figure, which alone is not exact, from end to end. Empty if the
+// range has no end, or a value is NULL.
+std::vector<double> Expression::values_along(const Known& known, const std::string& figure) {
   constexpr int kSteps = 8;
   const Range along = known.range(figure);
   if (!std::isfinite(along.least) || !std::isfinite(along.most)) return {};
@@ -135,6 +197,14 @@ Range Expression::range_along(const Known& known, const std::string& figure) {
     if (!value) return {};
     values.push_back(*value);
   }
+  return values;
+}
+
+// What it can be if this figure alone is not exact.
+Range Expression::range_along(const Known& known, const std::string& figure) {
+  if (!is_monotone(condition_.text, figure)) return {};
+  const std::vector<double> values = values_along(known, figure);
+  if (values.empty()) return {};
   if (std::is_sorted(values.begin(), values.end())) return {values.front(), values.back()};
   if (std::is_sorted(values.rbegin(), values.rend())) return {values.back(), values.front()};
   return {};
@@ -156,10 +226,15 @@ Range Expression::range(const Known& known) {
 
 std::optional<bool> Expression::holds(const Known& known) {
   if (comparison_) return comparison_->of(known.range(comparison_->figure));
+  std::vector<std::string> open;
   for (const std::string& name : used_) {
-    if (!known.range(name).is_exact()) return std::nullopt;
+    if (!known.range(name).is_exact()) open.push_back(name);
   }
-  return computed(known).value_or(0) != 0;
+  if (open.empty()) return computed(known).value_or(0) != 0;
+  if (open.size() > 1) return std::nullopt;
+  const auto values = values_along(known, open.front());
+  const bool hold = std::all_of(values.begin(), values.end(), [](double value) { return value != 0; });
+  return hold && !values.empty() ? std::optional(true) : std::nullopt;
 }
 
 const std::vector<std::string>& accuracy_figures() {

@@ -57,16 +57,18 @@ class Expression {
   bool is_fixed() const;
 
   // If one figure in it is not exact, what lies between the values at both ends of its range. Any number if
-  // the expression does not rise or fall all the way between, or several figures are not exact. Throws
-  // ConditionError if SQLite cannot compute it, or it is no number.
+  // it is not sure that the expression rises or falls all the way between, or several figures are not exact.
+  // Throws ConditionError if SQLite cannot compute it, or it is no number.
   Range range(const Known& known);
-  // Of a condition: whether it is true; nullopt: not known.
+  // Of a condition: whether it is true; nullopt: not known. If one figure in it is not exact, it is true if
+  // it is at both ends of its range and at seven places between, which is not asked of FIGURE < NUMBER.
   std::optional<bool> holds(const Known& known);
 
  private:
   struct Comparison;
 
   std::optional<double> computed(const Known& known);
+  std::vector<double> values_along(const Known& known, const std::string& figure);
   Range range_along(const Known& known, const std::string& figure);
   Condition condition_;
   std::set<std::string> used_;
@@ -79,6 +81,8 @@ class Expression {
 
 // The names in an SQL text, such as "image.width", outside its quoted texts.
 std::vector<std::string> names_in(const std::string& text);
+// The first of them that depends on the names of banks; empty if there is none.
+std::string name_of_bank(const std::string& text);
 
 // The accuracy of the disparities, which follows from the pixels alone.
 const std::vector<std::string>& accuracy_figures();

@@ -76,7 +76,15 @@ class Placements::Builder {
     all_.buffers_ = buffers_.size();
   }
 
-  void build() { place_next(); }
+  // Throws std::length_error if there are too many.
+  void build() {
+    if (!has_package()) {  // else some of them are none
+      counts_alone_ = true;
+      place_next();
+      counts_alone_ = false;
+    }
+    place_next();
+  }
   // The placement that the board has, without a check.
   void take_own() {
     for (const platform::PlacedBuffer& part : platform::buffers(board_)) {
@@ -155,13 +163,13 @@ class Placements::Builder {
   }
 
   void add() {
+    if (counts_alone_) return check_count(count_++);
     if (has_package()) {
       BoardConfig board = board_;
       place(board, placed_);
       if (!broken_rules(board, [](const std::string&) { return true; }).empty()) return;
     }
-    if (all_.size() == kMost)
-      throw std::length_error(fmt::format("more than {} different placements", kMost));
+    check_count(all_.size());
     for (const std::vector<int>& banks : placed_) {
       for (std::size_t part = 0; part < all_.most_parts_; ++part)
         all_.banks_.push_back(part < banks.size() ? static_cast<std::uint8_t>(banks[part]) : kNone);
@@ -170,6 +178,9 @@ class Placements::Builder {
     for (std::size_t frame = 0; frame < all_.turn_; ++frame) add_way(frame);
   }
 
+  static void check_count(std::size_t before) {
+    if (before == kMost) throw std::length_error(fmt::format("more than {} different placements", kMost));
+  }
   bool has_package() const { return !board_.fpga.package.empty(); }
 
   void add_use() {
@@ -216,6 +227,8 @@ class Placements::Builder {
   std::vector<int> used_;                 // [bank]: parts in it
   std::vector<std::int64_t> free_words_;  // [bank]
   int banks_ = 0;                         // used
+  bool counts_alone_ = false;
+  std::size_t count_ = 0;
   Banks placed_;
   std::map<std::vector<std::size_t>, std::size_t> uses_;
   std::map<Banks, std::size_t> ways_;

@@ -28,6 +28,8 @@ Search::Search(const Plan& plan, const SearchWishes& wishes, const BoardModel& m
   if (plan.size() > kMostCombinations)
     throw std::length_error(
         fmt::format("{} combinations of values: at most {}", plan.size(), kMostCombinations));
+  std::map<std::string, BoardConfig> first;
+  space_.add_board(0, first);  // throws at once if there are too many placements
   verdicts_.resize(plan.size());
   placements_.resize(plan.size());
   bests_.resize(plan.size() * space_.goals());
@@ -296,10 +298,17 @@ bool Search::run(const std::function<bool(const SearchState& state)>& keep_going
   const auto goes_on = [&] { return keep_going(state()); };
   if (space_.needs_accuracy() && !compute_accuracy(goes_on)) return false;
   if (!assess(goes_on)) return false;
+  state_.is_counted = true;
   while (!nodes_.empty()) {
     if (!do_round(goes_on)) return false;
   }
   return true;
+}
+
+Search::Impossible Search::impossible() const {
+  const auto first = std::find(verdicts_.begin(), verdicts_.end(), Verdict::kImpossible);
+  return {static_cast<std::uint64_t>(std::count(first, verdicts_.end(), Verdict::kImpossible)),
+          static_cast<std::uint64_t>(first - verdicts_.begin())};
 }
 
 Search::Board Search::board(const BoardNumber& number) {
@@ -365,14 +374,18 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
               return space_.simulate(its, group, placement, which, is_short);
             });
         if (its_own.fate == "unmet") {
-          found.unmet = "all requirements, or loses pixels, as its simulation shows";
+          found.unmet = fmt::format("all requirements{}, as its simulation shows",
+                                    its.run.camera ? ", or loses pixels" : "");
           continue;
         }
         GoalValues best{};
         const std::vector<double> bests = front_.bests_of(its_own.values);
         std::copy(bests.begin(), bests.end(), best.begin());
         take(best, its_own.values, false);
-        if (its_own.fate == "front") return found;
+        if (its_own.fate == "front") {
+          found.unmet.clear();
+          return found;
+        }
       }
       if (its.is_by_ways) break;
     }

@@ -20,7 +20,8 @@
 namespace stereotlm::explore {
 
 struct SearchState {
-  std::uint64_t boards = 0;     // of the space
+  std::uint64_t boards = 0;     // of the space, as far as they are counted
+  bool is_counted = false;      // all of them
   std::uint64_t open = 0;       // not decided yet, at most
   std::uint64_t simulated = 0;  // runs
   double best = 0;              // of the first goal
@@ -59,6 +60,12 @@ class Search {
   const SearchWishes& wishes() const { return wishes_; }
   SearchState state() const;
   std::uint64_t combinations() const { return verdicts_.size(); }
+  // How many combinations are no board, and the first of them, as far as is known.
+  struct Impossible {
+    std::uint64_t count = 0;
+    std::uint64_t first = 0;
+  };
+  Impossible impossible() const;
   // The board with this number; the reason if there is none.
   struct Board {
     std::optional<platform::BoardConfig> board;

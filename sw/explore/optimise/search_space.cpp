@@ -115,6 +115,17 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
                         "frames_per_second.core"});
   if (wishes.goals.size() > kMostGoals)
     problems.push_back({plan.path(), fmt::format("{} goals: at most {}", wishes.goals.size(), kMostGoals)});
+  if (wishes.most_banks > 0) {
+    for (const Condition& condition : plan.conditions()) {
+      if (const std::string name = explore::name_of_bank(condition.text); !name.empty())
+        problems.push_back(
+            {condition.place, fmt::format("{}: {}: names banks, and placements put buffers in all of them",
+                                          condition.name, name)});
+    }
+    if (const std::string path = plan.varied_banks(); !path.empty())
+      problems.push_back({plan.path(), path + ": its values differ in banks alone, and placements put "
+                                              "buffers in all of them"});
+  }
   if (!problems.empty()) throw platform::BoardError(problems);
   std::set<std::string> needed;
   for (const auto* const all : {&goals_, &requirements_}) {
@@ -135,15 +146,27 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
   for (const std::string& name : needed)
     needs_all_ = needs_all_ || std::count(core_figures().begin(), core_figures().end(), name) == 0;
   needs_steady_alone_ = needed == std::set<std::string>{kSteady};
-  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kExact, kExactLeast, kExactMost, kLostPixels});
-  needed_ = {needed.begin(), needed.end()};
-  needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
   const std::vector<std::string> varied = plan.varied();
   const bool has_computer =
       plan.run().camera || std::count(varied.begin(), varied.end(), std::string(kSourcePath)) > 0;
+  const bool asks_for_losses = std::any_of(needed.begin(), needed.end(), [](const std::string& name) {
+    return name == kLostPixels || name.find("dropped_pixels") != std::string::npos;
+  });
+  needs_whole_pictures_ = has_computer && (needed.count(kSteady) > 0 || !asks_for_losses);
+  if (needed.count(kSteady) > 0) needed.insert({kUncertainty, kExact, kExactLeast, kExactMost});
+  if (needs_whole_pictures_) needed.insert(kLostPixels);
+  needed_ = {needed.begin(), needed.end()};
+  needs_energy_ = needed.count("energy.memory_mj_per_frame") > 0;
   if (needed.count(kSteady) > 0 && !has_computer)
     throw platform::BoardError(
         {{plan.path(), fmt::format("{}: of a whole computer: give {}: camera", kSteady, kSourcePath)}});
+  if (needs_energy_ && has_computer && plan.run().frames == 0 &&
+      std::count(varied.begin(), varied.end(), std::string(kFramesPath)) == 0)
+    throw platform::BoardError(
+        {{plan.path(),
+          fmt::format("energy.memory_mj_per_frame: counts the start of a run of a whole computer, "
+                      "so all boards must run equally long: give {}, such as 120",
+                      kFramesPath)}});
 }
 
 Combination& SearchSpace::combination(std::uint64_t number) {
@@ -195,6 +218,8 @@ Combination& SearchSpace::take(std::uint64_t number, BoardConfig board, const Po
   }
   if (const auto problem = plan_.tables_problem(last_.board))
     rules.push_back(fmt::format("{}: {}", kCalibrationPath, *problem));
+  if (const auto problem = plan_.pairs_problem(last_.board))
+    rules.push_back(fmt::format("{}: {}", kPairsPath, *problem));
   if (!rules.empty()) return impossible(fmt::format("{}", fmt::join(rules, "; ")));
   for (std::size_t i = 0; i < accuracy_.size() && is_judged_; ++i) {
     const std::string key = accuracy_key(last_.board);
@@ -431,7 +456,8 @@ std::vector<double> SearchSpace::simulate(Combination& of, const Placements::Gro
     const auto found = std::find_if(figures.values.begin(), figures.values.end(),
                                     [&name](const auto& value) { return value.path == name; });
     if (found == figures.values.end()) {
-      if (name != kUncertainty && name.rfind(kExact, 0) != 0) throw_no_figure(name);
+      const bool may_lack = name == kUncertainty || name == kLostPixels || name.rfind(kExact, 0) == 0;
+      if (!may_lack) throw_no_figure(name);
       values.push_back(0);
     } else if (const auto* const integer = std::get_if<std::int64_t>(&found->value)) {
       values.push_back(static_cast<double>(*integer));
@@ -474,8 +500,8 @@ std::optional<SearchSpace::Worth> SearchSpace::worth(Combination& of, const Plac
   Worth worth;
   Known now = {facts.board, of.run, facts.figures};
   for (const auto& [name, value] : named(of, results, facts.board)) now.others[name] = Range::of(value);
+  if (needs_whole_pictures_ && of.run.camera && now.range(kLostPixels).least > 0) return std::nullopt;
   if (const auto steady = now.others.find(kSteady); steady != now.others.end() && of.run.camera) {
-    if (now.range(kLostPixels).least > 0) return std::nullopt;  // the bound is one of whole pictures
     const double rate = steady->second.least;
     const double uncertainty = now.range(kUncertainty).least;
     Range proven = long_run_rate(of, placement, facts.board);
@@ -500,7 +526,8 @@ std::optional<SearchSpace::Worth> SearchSpace::worth(Combination& of, const Plac
       const std::string& text = goals_[goal].text();
       throw ConditionError(
           fmt::format("{}: the rate of a board lies between {:.3f} and {:.3f} frames/s: the goal must rise "
-                      "all the way between them, or fall",
+                      "all the way between them, or fall: the rate once, with numbers, keys, + - * /, "
+                      "comparisons, round(), min() or max()",
                       text, worth.steady.least, worth.steady.most),
           text);
     }

@@ -183,6 +183,7 @@ class SearchSpace {
   std::vector<std::string> accuracy_;            // its figures that are needed
   bool is_judged_ = true;                        // whether the last combination has them
   bool needs_all_ = false;                       // a figure beyond those of the core
+  bool needs_whole_pictures_ = false;            // a computer that loses pixels does not count
   bool needs_steady_alone_ = false;              // the only one of a run is the steady rate
   bool needs_energy_ = false;                    // that of sdram does not follow from the cycles alone
   std::unique_ptr<Conditions> conditions_;

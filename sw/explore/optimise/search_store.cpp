@@ -227,4 +227,13 @@ std::uint64_t SearchStore::boards() const {
   return static_cast<std::uint64_t>(database.number("SELECT value FROM search WHERE name = 'boards'"));
 }
 
+Search::Impossible SearchStore::impossible() const {
+  sqlite::Database database(path_, sqlite::Database::Access::kRead);
+  const auto number = [&database](const char* what) {
+    return static_cast<std::uint64_t>(
+        database.number(fmt::format("SELECT coalesce({}, 0) FROM parts WHERE verdict = 'impossible'", what)));
+  };
+  return {number("sum(last - first + 1)"), number("min(first)")};
+}
+
 }  // namespace stereotlm::explore

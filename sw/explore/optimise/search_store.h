@@ -46,6 +46,7 @@ class SearchStore {
   // Of a finished search.
   std::vector<FrontPoint> front(std::size_t goals) const;
   std::uint64_t boards() const;
+  Search::Impossible impossible() const;
 
  private:
   void create(sqlite::Database& database) const;

@@ -50,9 +50,9 @@ bool do_in_processes(std::size_t count, unsigned processes,
   SharedCount begun;
   std::vector<std::unique_ptr<process::Child>> workers;
   const auto run = [&](const process::Child::Tell& tell) {
-    // Ctrl-C in a terminal goes to all processes. Only the parent process handles it.
+    // Ctrl-C in a terminal, or a job scheduler, reaches all processes. Only the parent process handles it.
     std::signal(SIGINT, SIG_IGN);
-    std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGTERM, SIG_IGN);
     for (std::uint64_t piece = begun.next(); piece < count; piece = begun.next())
       tell(std::string(reinterpret_cast<const char*>(&piece), sizeof piece) + work(piece));
   };

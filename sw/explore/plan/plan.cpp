@@ -120,6 +120,22 @@ std::vector<std::string> Plan::varied_values(std::uint64_t number) const {
   return values;
 }
 
+std::string Plan::varied_banks() const {
+  for (const Axis& axis : axes_) {
+    std::set<std::vector<std::size_t>> buffers;
+    for (std::uint64_t place = 0; place < axis.size(); ++place) {
+      std::vector<std::size_t> counts;
+      for (std::size_t i = 0; i < axis.paths.size(); ++i) {
+        const platform::YamlNode value = axis.values[i].at(place);
+        if (!platform::is_below(axis.paths[i], "allocation")) break;
+        counts.push_back(value.is_list() ? value.items.size() : value.text == "none" ? 0 : 1);
+      }
+      if (counts.size() == axis.paths.size() && !buffers.insert(counts).second) return axis.paths.front();
+    }
+  }
+  return "";
+}
+
 Point Plan::point(std::uint64_t number) const {
   const ReadPoint made = read(number);
   const platform::BoardDraft& draft = made.draft;
@@ -290,8 +306,14 @@ class PlanReader {
       }
     }
     base = plan_.base_->read_with_problems();
-    add(base.problems);
-    if (!base.problems.empty()) return;
+    const bool varies = tree.find("vary") != nullptr || tree.find("zip") != nullptr;
+    bool is_wrong = false;
+    for (const Diagnostic& problem : base.problems) {
+      if (varies && problem.is_between_keys && !problem.is_missing) continue;  // a point may keep the rule
+      add({problem});
+      is_wrong = true;
+    }
+    if (is_wrong) return;
     for (const platform::BankConfig& bank : base.board.banks) take_bank(bank.name, place);
     plan_.base_board_ = std::move(base.board);
   }

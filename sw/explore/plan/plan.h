@@ -81,11 +81,15 @@ class Plan {
   std::vector<std::string> varied() const;
   // The values that the plan gives them in a point.
   std::vector<std::string> varied_values(std::uint64_t number) const;
+  // The first key of `allocation` two of whose values differ in nothing but banks; empty: there is none.
+  std::string varied_banks() const;
   // Why the board cannot have the tables of the calibration of the plan; nullopt if it can, or if the plan
   // has none.
   std::optional<std::string> tables_problem(const platform::BoardConfig& board) const {
     return table_problem(board, [](const char*) { return true; });
   }
+  // The same of the pictures.
+  std::optional<std::string> pairs_problem(const platform::BoardConfig& board) const;
   // The points as a sequence, which is valid as long as this plan.
   Points points() const {
     return {size(), [this](std::uint64_t number) { return point(number); }, conditions_};
@@ -147,8 +151,6 @@ class Plan {
   // `is_checked` is false. Nullopt without a reason or without a calibration.
   std::optional<std::string> table_problem(const platform::BoardConfig& board,
                                            const std::function<bool(const char*)>& is_checked) const;
-  // The same of the pairs of pictures.
-  std::optional<std::string> pairs_problem(const platform::BoardConfig& board) const;
   // Whether neither the key nor one below it varies.
   bool is_fixed(const char* path) const;
 

@@ -196,8 +196,9 @@ std::optional<double> Conditions::number(const platform::BoardConfig& board, std
     return last_->second;
   bind(values);
   const auto number = computed(compiled_.front(), [](sqlite::Statement& row) {
-    const bool is_null = !row.step() || sqlite3_column_type(row.handle(), 0) == SQLITE_NULL;
-    return is_null ? std::nullopt : std::optional<double>(row.real(0));
+    const int type = row.step() ? sqlite3_column_type(row.handle(), 0) : SQLITE_NULL;
+    const bool is_number = type == SQLITE_INTEGER || type == SQLITE_FLOAT;
+    return is_number ? std::optional<double>(row.real(0)) : std::nullopt;
   });
   last_.emplace(std::move(values), number);
   return number;

@@ -179,8 +179,8 @@ class Points:
     def _add_columns(self):
         table = self.table
         allocated = table[[key for key in self.keys if key.startswith("allocation.")]]
-        table[BANKS_USED] = [len(set(re.findall(r"[^\[\], ]+", " ".join(map(str, row)))) - {"none", "None"})
-                             for row in allocated.values]
+        words = [set(re.findall(r"[^\[\]{}, ]+", " ".join(map(str, row)))) for row in allocated.values]
+        table[BANKS_USED] = [len(banks - {"none", "None", "rows:"}) for banks in words]
         if "matcher.units" in table:
             table[UNITS_USED] = table["matcher.units"].where(table["matcher.units"] != "all",
                                                              table.get("matcher.disparities"))

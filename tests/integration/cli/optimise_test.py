@@ -220,7 +220,91 @@ class Optimise(ProgramTest):
         self.assertIn("no combination is a board; the first: fpga.result_fifo_words = 1: at least 2",
                       self.succeeds(run("optimise", self.plan(plan))))
 
+    def values(self, *words):
+        return [[value["least"] for value in point["values"]] + [point["boards"]]
+                for point in self.found(*words)["front"]]
+
+    def test_a_requirement_on_an_uncertain_rate_may_be_written_in_any_way(self):
+        """All four boards have steady 29.97 with an uncertainty, and lose no pixels."""
+        plan = self.plan("board: sdram\nrun: {source: camera, frames: 20}\n"
+                         "vary: {matcher.lr_tolerance: [0, 1], pci.latency_timer_clocks: [32, 64]}\n"
+                         "set: {image.width: 160, image.height: 120}\nmaximise: matcher.lr_tolerance\n")
+        rate = "frames_per_second.steady"
+        for condition in (f"{rate} >= 20", f"20 <= {rate}", f"{rate} * 2 >= 40", f"{rate} > 2e1",
+                          f"{rate} BETWEEN 20 AND 40", f"{rate} >= 20 AND pins > 0"):
+            self.assertEqual(self.values(plan, "--for", condition), [[1, 2]], condition)
+        for condition in (f"{rate} >= 31", f"31 <= {rate}", f"{rate} BETWEEN 31 AND 40"):
+            self.assertEqual(self.found(plan, "--for", condition)["front"], [], condition)
+
+    def test_a_goal_that_does_not_rise_all_the_way_has_no_bound(self):
+        plan = self.plan("board: fpl2003\nrun: {source: preloaded}\nplacements: {banks: 4}\n"
+                         "set: {image.width: 64, image.height: 48, matcher.window: 5, "
+                         "matcher.disparities: 16}\n"
+                         "vary: {matcher.units: [all, 8]}\n")
+        rates = [row[0] for row in self.values(plan, "--maximise", "frames_per_second.core", "--minimise",
+                                               "frames_per_second.core")]
+        self.assertGreater(len(rates), 10)
+        for aim in sorted(rates)[1:-1:7]:
+            goal = f"abs(frames_per_second.core - {aim + 0.01})"
+            (distance, boards), = self.values(plan, "--minimise", goal)
+            self.assertAlmostEqual(distance, min(abs(rate - aim - 0.01) for rate in rates), 9)
+            self.assertGreater(boards, 0)
+
+    def test_all_boards_that_the_cameras_hold_at_60_tie(self):
+        """The time of a frame at 60 Hz is no whole number of ps."""
+        plan = self.plan("""
+board: fpl2003
+run: {source: camera, frames: 20}
+set: {image.width: 48, image.height: 32, cameras.frame_rate_hz: 60,
+      allocation.left_image: bank0, allocation.right_image: bank2, matcher.fetch: line_buffer}
+vary: {bridge.posted_words: [1, 8, 64], bridge.dma_burst_words: [1, 32]}
+maximise: frames_per_second.steady
+""")
+        points = self.found(plan)["front"]
+        self.assertEqual(sum(point["boards"] for point in points), 6)
+        self.assertEqual({point["values"][0]["most"] for point in points}, {60})
+        self.assertEqual(self.found(plan, "--for", "frames_per_second.steady < 60")["front"], [])
+
+    def test_a_knob_of_the_command_keeps_its_value(self):
+        words = ["fpl2003", *sets("image.width=32", "image.height=24", "matcher.units=64"), "--banks", 2,
+                 "--maximise", "frames_per_second.core"]
+        text = self.succeeds(run("optimise", *words))
+        self.assertNotIn("matcher.units", text.split("proven")[0].split("stereotlm")[0])
+        command = shlex.split(text.split("the first of them: stereotlm explain ")[1].split("\n")[0])
+        self.assertIn("matcher.units=64", command)
+        self.succeeds(run("check", *(word for word in command if word not in ("--source", "preloaded"))))
+        varied = self.succeeds(run("optimise", *words[:5], *words[7:]))
+        self.assertIn("matcher.units: all, 40, 27, 20;", varied)
+        names = self.plan("board: fpl2003\nrun: {source: preloaded}\nvary: {name: ['1', '[a']}\n"
+                          "maximise: pins\n")
+        command = shlex.split(self.found(names)["front"][0]["command"])
+        self.succeeds(run("check", command[2], *sets(command[-1])))
+
+    def test_a_board_of_pictures_of_another_size_is_impossible(self):
+        left, right, truth = (self.file(name, "P5 64 48 255\n" + "ab" * 32 * 48)
+                              for name in ("left.pgm", "right.pgm", "truth.pgm"))
+        plan = self.plan(f"board: fpl2003\nrun: {{pairs: [{{left: {left}, right: {right}, truth: {truth}, "
+                         "scale: 4}]}\nset: {matcher.disparities: 16, matcher.window: 5}\n"
+                         "vary: {image.width: [64, 32], image.height: [48, 24]}\n"
+                         "maximise: frames_per_second.core\nminimise: image.width\n")
+        text = self.succeeds(run("optimise", plan))
+        self.assertIn("1 board in 4 combinations of values", text)
+        self.assertIn("3 combinations are no board; the first: run.pairs: ", text)
+
+    def test_says_of_the_best_that_it_is(self):
+        """Other placements of these values do not meet the requirement."""
+        words = ["fpl2003", "--set", "image.width=64", "--set", "image.height=48", "--banks", 3, "--minimise",
+                 "area.slices", "--set", "matcher.rows=1", "--set", "fpga.lanes=1"]
+        best = self.values(*words, "--maximise", "frames_per_second.core")[0][0]
+        asked = [*words, "--for", f"frames_per_second.core >= {best}", "--why", "matcher.fetch=line_buffer",
+                 "--why", "fpga.lane_fifo_slots=8", "--why", "fpga.tables=joint",
+                 "--why", "fpga.pixel_cache=word"]
+        self.assertIn("this board is one of the best", self.succeeds(run("optimise", *asked)))
+        other = self.succeeds(run("optimise", *words, "--why", "matcher.units=10"))
+        self.assertIn("this board is no board of the plan, and none of those beats it", other)
+
     def test_refusals(self):
+        two_banks = "allocation.left_lut: [bank6, bank0]"
         self.all_refused([
             (["optimise", "fpl2003"], "fpl2003: no goal: give maximise or minimise, such as maximise: "
              "frames_per_second.core"),
@@ -240,6 +324,19 @@ class Optimise(ProgramTest):
             (["optimise", self.plan(), "--for", "allocation.left_lut = 'bank0'"],
              "--for: allocation.left_lut = 'bank0': allocation.left_lut: names banks, and placements do not "
              "tell banks apart that are alike"),
+            (["optimise", self.plan(), "--for", "Allocation .left_lut = 'bank0'"], "names banks"),
+            (["optimise", self.file("where.yaml", PLAN + "where: allocation.left_lut <> 'bank0'\n")],
+             "names banks, and placements put buffers in all of them"),
+            (["optimise", self.file("vary.yaml", PLAN.replace("vary:", "vary:\n  " + two_banks))],
+             "allocation.left_lut: its values differ in banks alone, and placements put buffers in all of "
+             "them"),
+            (["optimise", "fpl2003", "--banks", 8, "--stripes", 4, "--minimise", "pins"],
+             "placements: more than 5000000 different placements: give fewer banks, stripes or buffers"),
+            (["optimise", self.plan(), "--why", "matcher.unitz=3"],
+             "--why: matcher.unitz = 3: unknown key; nearest known key: matcher.units"),
+            (["optimise", self.file("camera.yaml", COMPUTER + "run: {source: camera}\n"), "--minimise",
+              "energy.memory_mj_per_frame"],
+             "all boards must run equally long: give run.frames, such as 120"),
         ])
         process = run("sweep", self.plan(), "--out", self.store)
         self.assertEqual(process.returncode, 2)

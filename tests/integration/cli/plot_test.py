@@ -182,6 +182,14 @@ class Lines(FigureTest):
             allocation = [value for key, value in rows[row["hash"]].items() if key.startswith("allocation.")]
             self.assertEqual(int(row["banks_used"]), len(set(re.findall(r"bank\d", " ".join(allocation)))))
 
+    def test_a_stripe_uses_its_banks_alone(self):
+        store = self.sweep("board: eight-banks-four-lanes\nset: {image.width: 64, image.height: 48}\n"
+                           "vary: {matcher.window: [5, 7]}\n")
+        axes = "banks_used:min,frames_per_second.core:max"
+        self.assertIn("all points have banks_used = 8", self.succeeds(run("plot", store, "--out", self.out)))
+        self.draw("pareto", store, pareto=axes)
+        self.assertEqual({row["banks_used"] for row in self.table}, {"8"})
+
     def test_an_allocation_that_loses_pixels_is_not_the_best(self):
         header = ["name", "run.source", "allocation.left_lut", "allocation.left_image", *RATES, "lost_pixels"]
         one, two, losing = (("made", "camera", lut, "[bank1]", rate, 13, pixels)

@@ -118,8 +118,9 @@ export class Points {
   banksUsed() {
     const lists = this.allNames.filter(name => name.startsWith('allocation.')).map(name => this.column(name));
     return row => {
-      const banks = new Set(lists.flatMap(list => value(list[row]).match(/[^[\], ]+/g) ?? []));
-      return banks.size - (banks.has('none') ? 1 : 0);
+      const banks = new Set(lists.flatMap(list => value(list[row]).match(/[^[\]{}, ]+/g) ?? []));
+      for (const word of ['none', 'rows:']) banks.delete(word);
+      return banks.size;
     };
   }
 

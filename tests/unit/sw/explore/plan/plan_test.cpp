@@ -225,6 +225,12 @@ TEST(Plan, GivesTheReasonWhyACombinationIsImpossible) {
   EXPECT_EQ(plan.point(0).hash, wrong.hash);
 }
 
+TEST(Plan, MaySetWhatOnlyAVariedKeyMakesRight) {
+  const Plan plan = plan_of("set: {image.width: 1280}\nvary: {ssram.default.words: [524288, 1048576]}\n");
+  EXPECT_THAT(plan.point(0).reason, HasSubstr("90112 words missing"));
+  EXPECT_TRUE(plan.point(1).board);
+}
+
 // Expects the board of an impossible point, read as a file, to be refused for the reason of the point.
 void expect_same_refusal(const Point& point) {
   ASSERT_FALSE(point.board);
