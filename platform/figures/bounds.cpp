@@ -230,7 +230,7 @@ double rate_of_turns(const BoardConfig& board, const FrameAccesses& accesses) {
   const double picture = board.image.width / 4.0 * board.image.height *
                          local_bus_cycles_a_word(board, board.bridge.local_clock_mhz);
   const double core_hz = board.fpga.clock_mhz * 1e6;
-  // From one capture into a buffer to the next one, if so many cycles pass between them: periods of `tick_hz`.
+  // From one capture into a buffer to the next one, so many cycles or more later: periods of `tick_hz`.
   const double tick_hz = is_free_running ? board.cameras.frame_rate_hz : core_hz;
   const auto between_captures = [&](double cycles) {
     return is_free_running ? std::ceil(cycles * tick_hz / core_hz - 1e-9) : cycles;

@@ -241,11 +241,9 @@ int allocate(const AllocateOptions& options) {
   const explore::BoardModel model =
       runs::board_model(loaded.calibration ? &loaded.calibration->tables : nullptr);
   explore::Search search(plan, plan.wishes(), model, std::max(1U, std::thread::hardware_concurrency()));
-  std::optional<explore::StoreLock> lock;
   std::optional<explore::SearchStore> store;
   process::attempt_or_refuse("--out ", [&] {
     if (!options.out.is_given()) return;
-    lock.emplace(options.out.text());
     store.emplace(
         options.out.text(),
         explore::SearchStore::Asked{

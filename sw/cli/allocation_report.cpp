@@ -67,7 +67,8 @@ std::optional<double> open_rate(const AllocationReport& report, const BestOfAll&
 // The fewest decimals, 3 to 12, that show a difference of two rates.
 int decimals_of(double one, double other) {
   int decimals = 3;
-  while (decimals < 12 && fmt::format("{:.{}f}", one, decimals) == fmt::format("{:.{}f}", other, decimals)) ++decimals;
+  while (decimals < 12 && fmt::format("{:.{}f}", one, decimals) == fmt::format("{:.{}f}", other, decimals))
+    ++decimals;
   return decimals;
 }
 

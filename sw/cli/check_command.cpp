@@ -41,7 +41,7 @@ Json values_document(const platform::BoardConfig& board) {
   for (const platform::BoardValue& value : platform::values_of(board)) {
     std::visit([&](const auto& its) { values[value.path] = its; }, value.value);
     if (const auto* const text = std::get_if<std::string>(&value.value);
-        text != nullptr && (text->front() == '[' || text->front() == '{'))
+        text != nullptr && value.path != "name" && (text->front() == '[' || text->front() == '{'))
       values[value.path] = json_of(platform::parse_flow_value(*text, platform::Place::kBoard));
   }
   return values;

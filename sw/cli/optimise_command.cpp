@@ -530,11 +530,9 @@ int optimise(const OptimiseOptions& options) {
     }
     if (!problems_of_values.empty()) throw platform::BoardError(problems_of_values);
   });
-  std::optional<explore::StoreLock> lock;
   std::optional<explore::SearchStore> store;
   process::attempt_or_refuse("--out ", [&] {
     if (!options.out.is_given()) return;
-    lock.emplace(options.out.text());
     store.emplace(options.out.text(),
                   asked_of(question, calibration ? runs::sha256_of(calibration->tables) : ""));
   });
@@ -551,7 +549,6 @@ int optimise(const OptimiseOptions& options) {
     answer.boards = search->state().boards;
     answer.is_counted = search->state().is_counted;
     answer.impossible = search->impossible();
-    if (lock) lock->check();
     if (store && answer.is_proven) store->finish(*search);
   }
   answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -45,16 +45,21 @@ bool frames_are_independent(const BoardConfig& board) {
          });
 }
 
-// "; nearest: NAME" for SQLite's message about a name that it does not know.
+// What to do about a name that SQLite does not know: "; nearest: NAME".
 std::string nearest_name(const std::string& message, const std::set<std::string>& figures) {
   const std::string unknown = "no such column: ";
   if (message.rfind(unknown, 0) != 0) return "";
   const std::string name = message.substr(unknown.size());
+  if (figures.count(name) > 0 || stats::find_figure(name) != nullptr || platform::find_key(name) != nullptr)
+    return std::count(name.begin(), name.end(), '.') > 1 ? "; a figure of three parts or more stands alone"
+                                                         : "; write it without quotes";
   std::vector<std::string> names = stats::figure_names_like(name);
   names.insert(names.end(), figures.begin(), figures.end());
   for (const platform::Key& key : platform::board_keys()) names.push_back(key.path);
+  const auto is_form = [](const std::string& one) { return one.find("NAME") != std::string::npos; };
+  names.erase(std::remove_if(names.begin(), names.end(), is_form), names.end());
   const std::string nearest = platform::nearest_path(name, names);
-  return nearest.empty() ? "" : "; nearest: " + nearest;
+  return nearest.empty() ? "; stereotlm keys, and keys --figures, list the names" : "; nearest: " + nearest;
 }
 
 }  // namespace
@@ -98,7 +103,7 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
                                                     text.name, name)});
     } catch (const std::invalid_argument& error) {
       const std::string reason = error.what();  // which may name the nearest key
-      const std::string own = reason.substr(0, reason.find("; nearest: "));
+      const std::string own = reason.substr(0, reason.find("; "));
       const std::string nearest = nearest_name(own, names);
       problems.push_back(
           {text.place, fmt::format("{}: {}", text.name, nearest.empty() ? reason : own + nearest)});
@@ -112,7 +117,7 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
   if (wishes.goals.empty())
     problems.push_back({plan.path(),
                         "no goal: give maximise or minimise, such as maximise: "
-                        "frames_per_second.core"});
+                        "frames_per_second.core, or the option --maximise"});
   if (wishes.goals.size() > kMostGoals)
     problems.push_back({plan.path(), fmt::format("{} goals: at most {}", wishes.goals.size(), kMostGoals)});
   if (wishes.most_banks > 0) {

@@ -61,7 +61,7 @@ std::string verdict_text(Verdict verdict) {
 }
 
 SearchStore::SearchStore(const std::string& path, const Asked& asked)
-    : path_(behind_links(path)), asked_(asked) {
+    : lock_(path), path_(behind_links(path)), asked_(asked) {
   // To write, because a process that was killed may have left a change that is to be rolled back.
   sqlite::Database database(path_, sqlite::Database::Access::kCreate);
   if (database.number("PRAGMA page_count") == 0) {
@@ -119,6 +119,7 @@ SearchResults SearchStore::results() const {
 
 void SearchStore::add(const SearchResults& results) const {
   if (results.empty()) return;
+  lock_.check();
   sqlite::Database database(path_, sqlite::Database::Access::kWrite);
   database.execute("BEGIN IMMEDIATE");
   sqlite::Statement insert(database, "INSERT OR IGNORE INTO results VALUES(?, ?)");
@@ -131,6 +132,7 @@ void SearchStore::add(const SearchResults& results) const {
 }
 
 void SearchStore::finish(Search& search) const {
+  lock_.check();
   using namespace std::string_literals;
   const auto kind =
       files::marked_kind("database of stereotlm optimise", {{0, "SQLite format 3\0"s}, {68, "STLO"}});

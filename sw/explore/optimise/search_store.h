@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sw/explore/optimise/search.h"
+#include "sw/explore/store/store.h"
 #include "sw/sqlite/database.h"
 
 namespace stereotlm::explore {
@@ -33,8 +34,9 @@ class SearchStore {
   // What was asked for; two searches are the same if all of it is equal.
   using Asked = std::map<std::string, std::string>;
 
-  // Throws DatabaseError if the file is not one of this kind, or is of another search, unless that one has no
-  // results.
+  // Throws DatabaseError if the file is not one of this kind, is of another search, unless that one has no
+  // results, or another process is at work on it. add() and finish() throw StoreGone if another file has
+  // appeared in its place.
   SearchStore(const std::string& path, const Asked& asked);
 
   bool is_finished() const { return is_finished_; }
@@ -53,6 +55,7 @@ class SearchStore {
   // Writes what is asked for.
   void ask(sqlite::Database& database) const;
 
+  StoreLock lock_;
   std::string path_;
   Asked asked_;
   bool is_finished_ = false;

@@ -5,6 +5,7 @@ import random
 import shlex
 import signal
 import sqlite3
+import subprocess
 import time
 
 import jsonschema
@@ -160,6 +161,23 @@ class Optimise(ProgramTest):
         self.assertEqual([first for first, _ in parts], [0] + [last + 1 for _, last in parts[:-1]])
         self.assertEqual(parts[-1][1], combinations - 1)
 
+    def test_a_database_that_appears_in_its_place_is_kept(self):
+        """It is of another search that has not ended, which the command could continue."""
+        other = self.folder / "other.db"
+        plan = self.file("other.yaml", LONG.replace("[3, 4, 8]", "[3, 5]"))
+        self.succeeds(run("optimise", plan, "--out", other, "--within", "0.5s"))
+        content = other.read_bytes()
+        command = program.words(["optimise", self.plan(LONG), "--out", self.store])
+        pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+        with subprocess.Popen(command, text=True, **pipes) as process:
+            program.wait_until(lambda: self.store.exists() and self.store.stat().st_size > 0)
+            self.store.rename(self.folder / "aside.db")
+            other.rename(self.store)
+            _, errors = process.communicate()
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("found.db", errors)
+        self.assertEqual(self.store.read_bytes(), content)
+
     def test_says_why_a_board_is_not_the_best(self):
         ask = ["optimise", self.plan(), "--for", "area.slices < 12000"]
         text = self.succeeds(run(*ask, "--why", "matcher.window=9"))
@@ -310,6 +328,9 @@ maximise: frames_per_second.steady
              "frames_per_second.core"),
             (["optimise", "fpl2003", "--minimise", "area.slice"],
              "--minimise: area.slice: no such column: area.slice; nearest: area.slices"),
+            (["optimise", "fpl2003", "--minimise", "fps"],
+             "--minimise: fps: no such column: fps; stereotlm keys, and keys --figures, list the names"),
+            (["optimise", "fpl2003", "--minimise", '"area.slices" + 1'], "; write it without quotes"),
             (["optimise", self.file("core.yaml", PLAN), "--maximise", "frames_per_second.steady"],
              "frames_per_second.steady: of a whole computer: give run.source: camera"),
             (["optimise", "fpl2003", "--maximise", "frames_per_second.exact"],
