@@ -105,6 +105,12 @@ class Optimise(ProgramTest):
                  for rate, uncertainty, *proven, lost in rows if lost == 0]
         self.assertTrue(0 < len(whole) < len(rows), rows)
         least = max(least for least, _ in whole)
+        for wish in ("--minimise", "--maximise"):  # nor where the rate is no goal
+            with sqlite3.connect(self.store) as database:
+                clocks = [value for value, in database.execute("SELECT pci_busy_clocks FROM plain WHERE "
+                                                               "status = 'ok' AND lost_pixels = 0")]
+            (best, _), = self.values(self.plan(plan), wish, "pci.busy_clocks")
+            self.assertEqual(best, min(clocks) if wish == "--minimise" else max(clocks))
         found = self.found(self.plan(plan), "--maximise", "frames_per_second.steady")
         boards = sum(point["boards"] for point in found["front"])
         # The bound may cut the range of a rate, and so rule out more.
