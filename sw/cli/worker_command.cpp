@@ -235,7 +235,7 @@ struct WorkerOptions : Options {
   using Options::Options;
 };
 
-int serve(const WorkerOptions& /*options*/) {
+int execute_commands(const WorkerOptions& /*options*/) {
   if (process::client != nullptr) process::refuse("worker: cannot be a command for a worker");
   // What libraries print must not get between the documents.
   const int to = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
@@ -276,7 +276,8 @@ int serve(const WorkerOptions& /*options*/) {
 }  // namespace
 
 void add_worker(Commands& commands) {
-  add_command(commands, "worker", "Execute commands for another program, over a pipe", serve, kWorkerFooter);
+  add_command(commands, "worker", "Execute commands for another program, over a pipe", execute_commands,
+              kWorkerFooter);
 }
 
 }  // namespace stereotlm::cli

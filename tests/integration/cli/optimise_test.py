@@ -230,13 +230,16 @@ class Optimise(ProgramTest):
 
     def test_says_why_no_board_is_left(self):
         for where, and_steady, why in (
-                ("window = 9", False, "where leaves out every board\n"),
+                ("window = 9", False, "where leaves out every board, or those that are left lose pixels\n"),
+                ("capture.fifo_words = 4", False, "or those that are left lose pixels\n"),
                 ("window = 9", True, "where leaves out every board, or those that are left lose pixels\n"),
                 ("capture.fifo_words = 4", True, "or those that are left lose pixels\n")):
             plan = f"{COMPUTER}run: {{source: camera}}\nwhere: [\"{where}\"]\nminimise: area.slices\n"
             if and_steady:
                 plan += "maximise: frames_per_second.steady\n"
             self.assertIn(why, self.succeeds(run("optimise", self.plan(plan))))
+        core_alone = self.plan(PLAN + "where: [window = 11]\n")
+        self.assertIn("where leaves out every board\n", self.succeeds(run("optimise", core_alone)))
         plan = COMPUTER.replace("[4, 16, 140]", "[4]") + "run: {source: camera}\n"
         text = self.succeeds(run("optimise", self.plan(plan + "maximise: frames_per_second.steady\n")))
         self.assertIn("every board loses pixels\n", text)
