@@ -8,15 +8,6 @@
 #include "models/memory/memory_config.h"
 
 namespace stereotlm::fpga {
-namespace {
-
-bool grants(const memory::BankArbiter::Outcome& outcome) { return outcome.granted != 0; }
-
-bool are_alike(const memory::BankArbiter::Outcome& a, const memory::BankArbiter::Outcome& b) {
-  return a.requests == b.requests && a.writes == b.writes && a.granted == b.granted && a.cause == b.cause;
-}
-
-}  // namespace
 
 void HostPort::route(const HostRoute& route) {
   burst_ = route;
@@ -71,6 +62,7 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
   const std::size_t bank = *burst_.bank;
   count_served(UINT64_MAX, true);  // the words of the previous burst, which has ended
   served_bank_ = bank;
+  served_write_ = burst_.write;
   served_traffic_ = traffic();
   served_end_ = burst_.end;
   // The first cycle that is not decided. A word that was refused up to the end of a frame requests again in
@@ -98,10 +90,10 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
       count_words_outside();
       return edge_ps + 1;
     }
-    const memory::BankArbiter::Outcome outcome = decide(bank, cycle, burst_.write);
-    served_.push_back({cycle, 1, outcome});
-    record_served(cycle, 1, grants(outcome), outcome.cause);
-    has_direction = grants(outcome);
+    const Served served = decide(bank, cycle, burst_.write);
+    served_.push_back(served);
+    record_served(cycle, 1, served.granted, served.cause);
+    has_direction = served.granted;
     if (has_direction) serve_words(1, cycle);
     ++cycle;
   }
@@ -110,11 +102,12 @@ std::optional<std::uint64_t> HostPort::serve_uncontended(std::uint64_t horizon_p
 }
 
 // The outcome is counted only by count().
-memory::BankArbiter::Outcome HostPort::decide(std::size_t bank, std::uint64_t cycle, bool write) {
+HostPort::Served HostPort::decide(std::size_t bank, std::uint64_t cycle, bool write) {
   memory::BankArbiter& arbiter = arbitration_.arbiter(bank);
   std::array<std::uint32_t, memory::kMostPorts> words;
   if (arbiter.has_rows()) words[port_] = bus_.word_waits() ? first_word() : 0;
-  return arbiter.decide(cycle, mask_, write ? mask_ : 0, words.data());
+  const memory::BankArbiter::Outcome its = arbiter.decide(cycle, mask_, write ? mask_ : 0, words.data());
+  return {cycle, 1, its.granted != 0, static_cast<std::uint32_t>(its.cause)};
 }
 
 // Moves all data of a burst that has just begun, if no frame can start within the burst and its bank grants
@@ -148,16 +141,15 @@ void HostPort::serve_words(std::size_t words, std::uint64_t last_cycle) {
 void HostPort::serve_at_once(std::uint64_t first_cycle) {
   std::uint64_t cycle = std::max(first_cycle, clock_.edge_at_or_after(bus_.request_ps()));
   const std::size_t words = bus_.words_left();
-  const memory::BankArbiter::Outcome outcome = decide(*burst_.bank, cycle, burst_.write);
+  served_.push_back(decide(*burst_.bank, cycle, burst_.write));
   if (is_in_step_) {
-    served_.push_back({cycle, words, outcome});
+    served_.back().cycles = words;
     record_served(cycle, words, true, 0);
     cycle += words - 1;
   } else {
-    served_.push_back({cycle, 1, outcome});
     for (std::size_t word = 1; word < words; ++word) {
       cycle = clock_.edge_at_or_after(bus_.next_request_ps(clock_.edge_ps(cycle)));
-      served_.push_back({cycle, 1, outcome});
+      served_.push_back({cycle, 1, true, 0});
     }
   }
   // An access in the other direction waits from the last word on.
@@ -171,24 +163,28 @@ HostTraffic HostPort::traffic() const {
   return conflicts == nullptr ? HostTraffic::kCapture : conflicts->traffic_of(burst_.write, burst_.first);
 }
 
-void HostPort::count(const Served& served, bool in_frame) {
-  arbitration_.arbiter(served_bank_).count(served.outcome, served.cycles);
-  if (in_frame) frames_.control().count_host(grants(served.outcome), served.cycles);
+void HostPort::count(const Served& served, std::uint64_t cycles, bool in_frame) {
+  const memory::BankArbiter::Outcome outcome = {mask_, served_write_ ? mask_ : 0, served.granted ? mask_ : 0,
+                                                served.cause};
+  arbitration_.arbiter(served_bank_).count(outcome, cycles);
+  if (in_frame) frames_.control().count_host(served.granted, cycles);
 }
 
 void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
   ConflictRecorder* const conflicts = in_frame ? frames_.conflicts() : nullptr;
+  const auto are_alike = [](const Served& a, const Served& b) {
+    return a.granted == b.granted && (a.granted || a.cause == b.cause);
+  };
   std::uint64_t alike = 0;  // cycles in a row with the outcome of `next`, which are counted together
   auto next = served_.begin();
   for (; next != served_.end() && next->cycle < end_cycle; ++next) {
     const std::uint64_t cycles = std::min(next->cycles, end_cycle - next->cycle);
     alike += cycles;
     const auto after = std::next(next);
-    if (after == served_.end() || after->cycle >= end_cycle || !are_alike(after->outcome, next->outcome))
-      count({next->cycle, std::exchange(alike, 0), next->outcome}, in_frame);
+    if (after == served_.end() || after->cycle >= end_cycle || !are_alike(*after, *next))
+      count(*next, std::exchange(alike, 0), in_frame);
     if (conflicts != nullptr) {
-      conflicts->hear_apart(served_traffic_, served_bank_, next->cycle, cycles, grants(next->outcome),
-                            next->outcome.cause);
+      conflicts->hear_apart(served_traffic_, served_bank_, next->cycle, cycles, next->granted, next->cause);
     }
     if (cycles == next->cycles) continue;
     next->cycle += cycles;
@@ -206,7 +202,7 @@ void HostPort::count_served(std::uint64_t end_cycle, bool in_frame) {
 AddressRange HostPort::counted_ahead_of(std::uint64_t cycle) const {
   std::uint64_t words = 0;
   for (const Served& served : counted_ahead_) {
-    if (grants(served.outcome) && served.cycle + served.cycles > cycle)
+    if (served.granted && served.cycle + served.cycles > cycle)
       words += std::min(served.cycles, served.cycle + served.cycles - cycle);
   }
   return {served_end_ - 4 * words, served_end_};

@@ -96,7 +96,8 @@ class HostPort {
   struct Served {
     std::uint64_t cycle;
     std::uint64_t cycles;  // number of cycles, from `cycle` on
-    memory::BankArbiter::Outcome outcome;
+    bool granted;
+    std::uint32_t cause;  // why it was not granted
   };
 
   std::optional<HostWord> next_word() const;
@@ -111,11 +112,11 @@ class HostPort {
   void move_burst();
   void serve_words(std::size_t words, std::uint64_t last_cycle);
   void serve_at_once(std::uint64_t first_cycle);
-  memory::BankArbiter::Outcome decide(std::size_t bank, std::uint64_t cycle, bool write);
+  Served decide(std::size_t bank, std::uint64_t cycle, bool write);
   HostTraffic traffic() const;
   void count_served(std::uint64_t end_cycle, bool in_frame);
   void count_words_outside() { count_served(UINT64_MAX, false); }
-  void count(const Served& served, bool in_frame);
+  void count(const Served& served, std::uint64_t cycles, bool in_frame);
   std::uint64_t usable_ps(std::uint64_t cycle) const {
     return clock_.edge_ps(cycle + static_cast<std::uint64_t>(read_latency_cycles_));
   }
@@ -136,7 +137,8 @@ class HostPort {
   std::vector<Served> served_;
   std::vector<Served> counted_ahead_;  // of the last burst that was counted outside frames
   std::uint64_t served_end_ = 0;       // byte address behind the burst of served_
-  std::size_t served_bank_ = 0;        // bank of all served_
+  std::size_t served_bank_ = 0;        // of all served_
+  bool served_write_ = false;          // of all served_
   HostTraffic served_traffic_ = HostTraffic::kCapture;
 };
 

@@ -279,6 +279,14 @@ Fraction rate_of(const BoardConfig& board, const std::vector<Steps>& steps, Wide
 
 }  // namespace
 
+bool frames_are_apart(const BoardConfig& board, const FrameAccesses& accesses) {
+  for (std::uint64_t frame = 0; frame < allocation_period_frames(board); ++frame) {
+    const FrameWaits waits = waits_of_frame(board, accesses, frame);
+    if (waits.meets_host || waits.cycles != std::uint64_t{0}) return false;
+  }
+  return true;
+}
+
 std::optional<ProvenRate> proven_rate(const BoardConfig& board, const FrameAccesses& accesses,
                                       const std::vector<std::uint64_t>& frame_cycles, double bound) {
   constexpr std::size_t kFrames = 400;

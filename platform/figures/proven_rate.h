@@ -16,4 +16,8 @@ namespace stereotlm::platform {
 std::optional<ProvenRate> proven_rate(const BoardConfig& board, const FrameAccesses& accesses,
                                       const std::vector<std::uint64_t>& frame_cycles, double bound);
 
+// Whether the core and the host never meet in a bank, in any run of the computer: each frame takes the cycles
+// of the core alone, and no word of the host waits for the core (contract 7.12: all a and X are 0).
+bool frames_are_apart(const BoardConfig& board, const FrameAccesses& accesses);
+
 }  // namespace stereotlm::platform

@@ -189,9 +189,7 @@ std::uint64_t frames_of(const AllocateOptions& options, const BoardConfig& board
 
 void check(const AllocateOptions& options, const BoardConfig& board, process::Problems& problems) {
   if (options.most_banks() > static_cast<int>(board.banks.size())) {
-    problems.add(fmt::format(
-        "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
-        options.most_banks(), board.banks.size()));
+    problems.add(most_banks_text(options.most_banks(), board.banks.size()));
   }
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
     if (buffer.parts > 1 && buffer.part == 0) {
@@ -214,6 +212,7 @@ int allocate(const AllocateOptions& options) {
   if (board) check(options, *board, problems);
   auto written = board ? open_written(options, *board, problems) : nullptr;
   problems.check();
+  loaded.say_clock_remark();
   const platform::Tables tables = loaded.tables();
   const int banks = options.most_banks();
   AllocationReport report = {*board,

@@ -33,8 +33,6 @@ struct Row {
   std::string role;  // "port left_lut"; for a bank its buffers, "bank of left_image left_lut"
   std::uint64_t cycles = 0;
   Names banks;  // banks with this role; empty for a port
-
-  std::string label() const { return banks.empty() ? role : text_of(banks); }
 };
 
 // Frames whose bounds differ only in the names of banks.
@@ -140,8 +138,17 @@ BoardBounds bounds_of(const BoardConfig& board, const platform::Tables& tables) 
 }
 
 std::string lines_of(const Group& group, const BoardBounds& all) {
+  std::vector<std::pair<std::string, const Row*>> lines;
+  for (auto first = group.rows.begin(), next = first; first != group.rows.end(); first = next) {
+    std::vector<std::string> lanes;
+    for (; next != group.rows.end() && stats::group_text(next->role) == stats::group_text(first->role) &&
+           next->cycles == first->cycles && next->banks == first->banks;
+         ++next)
+      lanes.push_back(next->role);
+    lines.emplace_back(first->banks.empty() ? stats::ports_text(lanes) : text_of(first->banks), &*first);
+  }
   std::size_t width = 16;
-  for (const Row& row : group.rows) width = std::max(width, row.label().size());
+  for (const auto& line : lines) width = std::max(width, line.first.size());
   std::string text =
       (group.frames.size() == 1 ? "frame " : "frames ") + files::ranges_text(group.frames, ", ");
   const char* separator = ": ";
@@ -151,16 +158,9 @@ std::string lines_of(const Group& group, const BoardBounds& all) {
   }
   text +=
       fmt::format("\n  {:<{}} {:>14} {:>14} {:>12}\n", "resource", width, "cycles", "frames/s", "headroom %");
-  for (auto first = group.rows.begin(), next = first; first != group.rows.end(); first = next) {
-    std::vector<std::string> lanes;
-    for (; next != group.rows.end() && stats::group_text(next->role) == stats::group_text(first->role) &&
-           next->cycles == first->cycles && next->banks == first->banks;
-         ++next)
-      lanes.push_back(next->role);
-    text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n",
-                        first->banks.empty() ? stats::ports_text(lanes) : first->label(), width,
-                        first->cycles, all.frames_per_second(*first), headroom_percent(*first, group));
-  }
+  for (const auto& [label, row] : lines)
+    text += fmt::format("  {:<{}} {:>14} {:>14.3f} {:>12.2f}\n", label, width, row->cycles,
+                        all.frames_per_second(*row), headroom_percent(*row, group));
   return text;
 }
 
@@ -208,9 +208,13 @@ std::string text_of(const BoardBounds& all) {
                      bound_line("core bound", all.bound.core, all.bound.core_limited_by) +
                      area_text(all.board);
   for (const Group& group : all.groups) text += lines_of(group, all);
-  text += fmt::format("the whole computer, with all masters\n  {:<16} {:>14}\n", "resource", "frames/s");
+  std::size_t width = 16;
   for (const platform::RateBound& part : all.computer)
-    text += fmt::format("  {:<16} {:>14.3f}\n", stats::resource_text(part.resource), part.frames_per_second);
+    width = std::max(width, stats::resource_text(part.resource).size());
+  text += fmt::format("the whole computer, with all masters\n  {:<{}} {:>14}\n", "resource", width, "frames/s");
+  for (const platform::RateBound& part : all.computer)
+    text += fmt::format("  {:<{}} {:>14.3f}\n", stats::resource_text(part.resource), width,
+                        part.frames_per_second);
   return text + platform::local_bus_remark(all.board);
 }
 

@@ -66,29 +66,46 @@ std::string head_text(const BoardConfig& board, const platform::Tables& tables,
          shared_bank_text(board, explanation);
 }
 
-// The table of resources. Resources of one kind with the same values share a line.
+// The table of resources. Resources of one kind whose values are printed alike share a line.
 std::string resources_text(const BoardConfig& board, const Explanation& explanation) {
-  const std::vector<Explanation::Resource>& all = explanation.resources();
-  const auto values_of = [](const Explanation::Resource& resource) {
-    return std::tuple(resource.name.substr(0, resource.name.find(' ') + 1), resource.headroom_percent,
-                      resource.busy_percent, resource.varies, resource.varies ? resource.frame : 0);
+  struct Line {
+    std::string kind;    // "port ", "bank ", ..
+    std::string values;  // as printed
+    std::string frame;
+    std::vector<std::string> names{};
+  };
+  std::vector<Line> lines;
+  for (const Explanation::Resource& resource : explanation.resources()) {
+    Line line = {resource.name.substr(0, resource.name.find(' ') + 1),
+                 fmt::format("{:>12.2f} {:>8.2f} {:>14.3f}",
+                             files::without_minus_zero(resource.headroom_percent, 2), resource.busy_percent,
+                             resource.frames_per_second),
+                 resource.varies ? fmt::format(", in frame {} of {}", resource.frame,
+                                               platform::allocation_period_frames(board))
+                                 : ""};
+    auto same = std::find_if(lines.begin(), lines.end(), [&line](const Line& other) {
+      return !line.kind.empty() && other.kind == line.kind && other.values == line.values &&
+             other.frame == line.frame;
+    });
+    if (same == lines.end()) same = lines.insert(same, line);
+    same->names.push_back(resource.name);
+  }
+  const auto place_of_bank = [&board](const std::string& resource) {
+    return std::find_if(board.banks.begin(), board.banks.end(), [&](const platform::BankConfig& bank) {
+      return resource == platform::resource_of_bank(bank.name);
+    });
   };
   std::string text =
       fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
-  for (auto first = all.begin(), next = first; first != all.end(); first = next) {
-    const std::string kind = std::get<0>(values_of(*first));
-    const auto name_of = [&kind](const Explanation::Resource& resource) {
-      return kind == "port " ? resource.name.substr(kind.size()) : stats::resource_text(resource.name);
-    };
-    std::vector<std::string> names = {name_of(*first)};
-    for (++next; next != all.end() && !kind.empty() && values_of(*next) == values_of(*first); ++next)
-      names.push_back(name_of(*next));
-    std::string label = (kind == "port " ? kind : "") + stats::ports_text(names);
-    if (first->varies)
-      label += fmt::format(", in frame {} of {}", first->frame, platform::allocation_period_frames(board));
-    text += fmt::format("  {:>12.2f} {:>8.2f} {:>14.3f}  {}\n",
-                        files::without_minus_zero(first->headroom_percent, 2), first->busy_percent,
-                        first->frames_per_second, label);
+  for (Line& line : lines) {
+    const bool are_ports = line.kind == "port ";
+    std::stable_sort(line.names.begin(), line.names.end(), [&](const auto& a, const auto& b) {
+      return place_of_bank(a) < place_of_bank(b);
+    });
+    for (std::string& name : line.names)
+      name = are_ports ? name.substr(line.kind.size()) : stats::resource_text(name);
+    text += fmt::format("  {}  {}{}{}\n", line.values, are_ports ? line.kind : "",
+                        stats::ports_text(line.names), line.frame);
   }
   return text;
 }
@@ -148,11 +165,15 @@ std::string line_of(const Explanation::Step& found, const BoardConfig& board,
 // keys: by the key, or by its new value if other values of the key have a line.
 std::string changes_text(const BoardConfig& board, const Explanation& explanation) {
   std::string text = fmt::format(
-      "one change at a time: {} boards simulated; *: the disparities change too{}\n{}"
+      "one change at a time: {} boards simulated; *: the disparities change too{}\n{}{}"
       "to try a change, append --set KEY=TO, and drop an earlier --set of the same key\n"
       "now {:.3f} mJ a frame; mJ %: the change of that, of {}\n"
       "  {:>8} {:>8} {:>8} {:>7} {:>6} {:>4}  change: from -> to\n",
       explanation.simulated(), explanation.camera() ? "; ~: within the uncertainty" : "",
+      explanation.shared() == 0
+          ? ""
+          : fmt::format("{} more do the same at the same time as one of these or as now, and share its run\n",
+                        explanation.shared()),
       explanation.left_out() == 0
           ? ""
           : fmt::format("{} other ways of a change are left out: none exceeds the rate of the way listed by "

@@ -41,7 +41,10 @@ std::string value_text(const explore::Range& value) {
                                                                    : fmt::format("{:.3f}", number);
   };
   if (value.is_exact()) return short_number(value.least);
-  return fmt::format("{:.3f} ± {:.3f}", (value.least + value.most) / 2, (value.most - value.least) / 2);
+  const double half = (value.most - value.least) / 2;
+  int decimals = 3;
+  while (decimals < 12 && half < 0.5 * std::pow(10, -decimals)) ++decimals;
+  return fmt::format("{:.{}f} ± {:.{}f}", (value.least + value.most) / 2, decimals, half, decimals);
 }
 
 // The front as a table: goals, number of boards, and the keys that differ, of the first board of each.
@@ -256,13 +259,14 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
   if (!answer.question.varied.empty())
     text +=
         paragraph(plan.run().camera ? "the whole computer; " : "the core alone; ", 2, answer.question.varied);
-  if (answer.impossible.count > 0 && answer.boards > 0)
+  const bool has_board = answer.impossible.count < combinations;
+  if (answer.impossible.count > 0 && has_board)
     text += paragraph(fmt::format("{} combination{} no board; the first: ", answer.impossible.count,
                                   answer.impossible.count == 1 ? " is" : "s are"),
                       2, search.board({answer.impossible.first, 0}).reason);
   if (search.front().empty()) {
     text += !answer.is_proven    ? "no board so far\n"
-            : answer.boards == 0 ? no_board_text(search)
+            : !has_board         ? no_board_text(search)
                                  : empty_text(answer.question, model, processes);
   } else {
     text += front_text(search, plan);

@@ -6,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "platform/config/board_area.h"
 #include "platform/config/board_draft.h"
 #include "sw/cli/command.h"
 #include "sw/cli/optimise_answer.h"
@@ -33,6 +34,7 @@ int optimise(const OptimiseOptions& options) {
       runs::board_model(calibration ? &calibration->tables : nullptr, std::move(quality));
   const unsigned processes =
       options.jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
+  check_jobs(processes, processes);
   std::unique_ptr<Search> search;
   process::attempt_or_refuse(
       "", [&] { search = std::make_unique<Search>(plan, question.wishes, model, processes); });
@@ -77,6 +79,12 @@ int optimise(const OptimiseOptions& options) {
   if (asked)
     text +=
         "this board " + judgement_text(search->judge(*asked, plan.run(), places), *search, answer.is_proven);
+  for (const explore::FrontPoint& point : search->front()) {
+    const std::string remark = platform::clock_remark(*search->board(point.first.front()).board);
+    if (remark.empty()) continue;
+    process::say("note", remark);
+    break;
+  }
   process::print(text);
   if (!process::interrupted()) return kDone;
   return interrupted(resume_text(store.has_value()));

@@ -139,6 +139,11 @@ Question question_of(const OptimiseOptions& options) {
   add(options.requirements, [&](const auto& text) { wishes.requirements.push_back(text); });
   if (const auto banks = options.banks.number<int>()) wishes.most_banks = *banks;
   if (const auto parts = options.stripes.number<int>()) wishes.most_parts = *parts;
+  if (options.stripes.is_given() && wishes.most_banks == 0)
+    process::refuse("--stripes: goes with --banks N, or with placements in the plan");
+  if (const std::size_t banks = question.board.banks.size();
+      !has_plan && wishes.most_banks > static_cast<int>(banks))
+    process::refuse(most_banks_text(wishes.most_banks, banks));
   return question;
 }
 

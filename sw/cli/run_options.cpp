@@ -18,6 +18,7 @@
 #include "platform/config/board_draft.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
+#include "sw/explore/sweep/sweep.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/command.h"
 #include "sw/process/streams.h"
@@ -246,6 +247,20 @@ LoadedBoard BoardOptions::load(process::Problems& problems) const {
 void LoadedBoard::say_clock_remark() const {
   const std::string remark = platform::clock_remark(*board);
   if (!remark.empty()) process::say("note", remark);
+}
+
+void check_jobs(std::uint64_t jobs, std::uint64_t workers) {
+  const std::uint64_t most = explore::workers_with_files(workers);
+  if (most >= workers) return;
+  process::refuse(
+      fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): {}", jobs,
+                  most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
+}
+
+std::string most_banks_text(int asked, std::size_t banks) {
+  return fmt::format(
+      "--banks = {}: must be 1..{}, the banks of the board; --set 'ssram.banks.NEW={{}}' gives it one more",
+      asked, banks);
 }
 
 std::string TraceOptions::meaning() {

@@ -36,6 +36,12 @@ struct LoadedBoard {
   void say_clock_remark() const;
 };
 
+// Refuses so many worker processes if the limit on open files is too low for them. `jobs`: as asked for.
+void check_jobs(std::uint64_t jobs, std::uint64_t workers);
+
+// Why --banks is too large for a board with so many banks.
+std::string most_banks_text(int asked, std::size_t banks);
+
 // What the client has sent as the content of the file `name`; null if `path` is to be read. Throws
 // std::runtime_error if a client names a pipe or a device there, on which it cannot write while it waits for
 // the answer. On the command line both can be read.

@@ -255,12 +255,7 @@ void write_progress(const explore::SweepCounts& counts, const SweepCommandOption
 
 void prepare(const SweepCommandOptions& options, const explore::SweepOptions& sweep,
              const explore::Plan& plan) {
-  const std::uint64_t workers = std::min<std::uint64_t>(sweep.jobs, plan.size());
-  if (const std::uint64_t most = explore::workers_with_files(workers); most < workers) {
-    process::refuse(
-        fmt::format("--jobs = {}: too many for the limit on open files (ulimit -n): {}", sweep.jobs,
-                    most == 0 ? "raise it" : fmt::format("lower --jobs to {}, or raise the limit", most)));
-  }
+  check_jobs(sweep.jobs, std::min<std::uint64_t>(sweep.jobs, plan.size()));
   process::attempt_or_refuse("--known ", [&] {
     if (!options.known.is_given()) return;
     files::check_is_another(sweep.known, {{"--out", sweep.store}});

@@ -24,6 +24,7 @@
 #include "platform/figures/derived_figures.h"
 #include "platform/figures/proven_rate.h"
 #include "platform/loop/core_loop.h"
+#include "sw/explore/optimise/key_effects.h"
 #include "sw/explore/optimise/workers.h"
 #include "sw/files/text_forms.h"
 #include "sw/process/streams.h"
@@ -428,22 +429,30 @@ void Explanation::prove(ProgressLine& progress) {
     const platform::FrameAccesses accesses = platform::frame_accesses(board, patterns);
     const std::uint64_t turn = platform::allocation_period_frames(board);
     double work_pj = 0;
+    BusiestBank busiest;
     const auto of_banks = platform::accesses_of_banks(board, accesses, turn, true);
-    for (std::size_t bank = 0; bank < of_banks.size(); ++bank)
-      work_pj += platform::energy_of(board.banks[bank]).access_pj *
-                 static_cast<double>(of_banks[bank].reads + of_banks[bank].writes) /
-                 static_cast<double>(turn);
-    Json proven = {{"work_pj", work_pj}};
+    for (std::size_t bank = 0; bank < of_banks.size(); ++bank) {
+      const platform::BankConfig& its = board.banks[bank];
+      const double reads = static_cast<double>(of_banks[bank].reads) / static_cast<double>(turn);
+      const double writes = static_cast<double>(of_banks[bank].writes) / static_cast<double>(turn);
+      work_pj += platform::energy_of(its).access_pj * (reads + writes);
+      const double busy = memory::has_separate_ports(its.kind) ? std::max(reads, writes) : reads + writes;
+      if (busiest.name.empty() || busy > busiest.accesses_per_frame) busiest = {its.name, busy};
+    }
+    Json proven = {{"work_pj", work_pj}, {"busiest", {busiest.name, busiest.accesses_per_frame}}};
     if (!stepped_text(board, tables_, false).empty()) return proven;
+    const std::vector<std::uint64_t> cycles = platform::core_frame_cycles(board, patterns, turn);
     const auto rate =
-        platform::proven_rate(board, accesses, platform::core_frame_cycles(board, patterns, turn),
-                              platform::steady_bound(board, accesses));
+        platform::proven_rate(board, accesses, cycles, platform::steady_bound(board, accesses));
     proven["rate"] = {rate->least, rate->most};
+    if (platform::frames_are_apart(board, accesses)) proven["time"] = explore::computer_time_key(board, cycles);
     return proven;
   };
   for_each(all, "examined", progress, work, [this](std::size_t number, const Json& its) {
     if (its.contains("failure")) return;  // that of its simulation is shown
     proven_[number].work_pj = its["work_pj"];
+    proven_[number].busiest = {its["busiest"][0], its["busiest"][1]};
+    proven_[number].time = its.value("time", "");
     if (its.contains("rate")) proven_[number].rate = {its["rate"][0], its["rate"][1]};
   });
 }
@@ -459,7 +468,25 @@ void Explanation::simulate(const std::vector<std::size_t>& numbers, PointSimulat
     if (is_short(number)) run.frames = kTurns;
     return json_of(simulator(explore::make_point(number, board, run), run_.camera && number == 0));
   };
-  for_each(numbers, "simulated", progress, work, [&](std::size_t number, const Json& its) {
+  // Of computers that do the same at the same time, one is simulated.
+  std::vector<std::size_t> firsts;
+  std::map<std::size_t, std::size_t> like;  // the one that is simulated for another
+  for (const std::size_t number : numbers) {
+    const auto gives = [&](std::size_t other) {
+      const bool is_simulated = outcomes_[other] ? outcomes_[other]->failure.empty()
+                                                 : std::count(firsts.begin(), firsts.end(), other) > 0;
+      return is_simulated && proven_[other].time == proven_[number].time &&
+             (is_short(number) || !is_short(other));
+    };
+    std::size_t other = proven_[number].time.empty() ? outcomes_.size() : 0;
+    while (other < outcomes_.size() && !gives(other)) ++other;
+    if (other < outcomes_.size()) {
+      like.emplace(number, other);
+    } else {
+      firsts.push_back(number);
+    }
+  }
+  for_each(firsts, "simulated", progress, work, [&](std::size_t number, const Json& its) {
     if (its.contains("failure")) {
       outcomes_[number] = {{}, its["failure"]};
       return;
@@ -473,6 +500,11 @@ void Explanation::simulate(const std::vector<std::size_t>& numbers, PointSimulat
     outcomes_[number] = {named, ""};
     if (number == 0) blames_ = figures.blame;
   });
+  for (const auto& [number, other] : like) {
+    if (!outcomes_[other] || !outcomes_[other]->failure.empty()) continue;
+    outcomes_[number] = outcomes_[other];
+    ++shared_;
+  }
 }
 
 // The boards that are to be simulated next: the board, its steps and the surest one of each group. Then those
@@ -533,7 +565,7 @@ bool Explanation::simulate(PointSimulator simulator) {
 std::string Explanation::interruption() const {
   const std::size_t missing = next_boards().size();
   if (missing == 0) return "";
-  return fmt::format("{} of {} changes were simulated", simulated_, simulated_ + missing);
+  return fmt::format("{} of {} changes were evaluated", evaluated_, evaluated_ + missing);
 }
 
 Explanation::Rate Explanation::rate_of(std::size_t number) const {
@@ -568,6 +600,7 @@ Explanation::Rate Explanation::rate_of(std::size_t number) const {
 }
 
 Explanation::BusiestBank Explanation::busiest_bank_of(std::size_t number) const {
+  if (run_.camera) return proven_[number].busiest;
   const NamedFigures& row = outcomes_.at(number).value().figures;
   BusiestBank busiest;
   std::int64_t most = -1;
@@ -589,7 +622,7 @@ void Explanation::read_steps() {
   for (std::size_t i = 0; i < knobs_.possible.size(); ++i) {
     const explore::KnobStep& knob = knobs_.possible[i];
     if (!outcomes_[i + 1]) continue;
-    ++simulated_;
+    ++evaluated_;
     Step step{&knob, rate_of(i + 1), {}};
     if (step.rate.failure.empty()) step.busiest = busiest_bank_of(i + 1);
     steps_.push_back(std::move(step));

@@ -82,7 +82,7 @@ class Explanation {
   std::uint64_t frames() const { return explore::frames_of(run_, board_); }
   bool camera() const { return run_.camera; }
 
-  // The busiest bank of a simulated board.
+  // The bank with the most accesses in a frame, in the long run.
   struct BusiestBank {
     std::string name;
     double accesses_per_frame = 0;  // with separate ports: the larger of its reads and its writes
@@ -91,16 +91,19 @@ class Explanation {
   struct Step {
     const explore::KnobStep* step = nullptr;
     Rate rate;
-    BusiestBank busiest;  // without meaning if the run has failed
+    BusiestBank busiest;
   };
   // All steps that were simulated, the best first: by their rate, those that lose pixels after the others,
   // those that have failed last. Of a group only the best. A step is not simulated if it is proven that it
   // does not exceed the rate of another one of its group by more than its uncertainty.
   const std::vector<Step>& steps() const { return steps_; }
-  std::size_t simulated() const { return simulated_; }  // how many of knobs().possible
+  // How many of knobs().possible were simulated, and how many others share the simulation of one of them or of
+  // the board itself, because both do the same at the same time.
+  std::size_t simulated() const { return evaluated_ - shared_; }
+  std::size_t shared() const { return shared_; }
   // How many of them were left out for that.
-  std::size_t left_out() const { return knobs_.possible.size() - simulated_ - next_boards().size(); }
-  // "12 of 47 changes were simulated"; empty without an interrupt.
+  std::size_t left_out() const { return knobs_.possible.size() - evaluated_ - next_boards().size(); }
+  // "12 of 47 changes were evaluated"; empty without an interrupt.
   std::string interruption() const;
   const BusiestBank& busiest_bank() const { return busiest_; }
   const explore::KnobSteps& knobs() const { return knobs_; }
@@ -152,6 +155,8 @@ class Explanation {
   struct Proven {
     explore::Range rate;  // in the long run
     double work_pj = 0;   // of the accesses of a frame
+    BusiestBank busiest{};
+    std::string time{};  // equal for those that do the same at the same time; empty: not known
   };
   template <typename Work, typename Take>
   void for_each(const std::vector<std::size_t>& numbers, const char* done_to_them, ProgressLine& progress,
@@ -185,7 +190,8 @@ class Explanation {
   Rate now_;
   BusiestBank busiest_;
   std::vector<Step> steps_;
-  std::size_t simulated_ = 0;
+  std::size_t evaluated_ = 0;
+  std::size_t shared_ = 0;
   std::vector<Resource> resources_;
   std::map<std::string, double> pair_seconds_;
   platform::RateBound rate_bound_;

@@ -64,7 +64,7 @@ void collect(const std::string& path, const Schema& schema, std::vector<Figure>&
   } else {
     const bool is_text = schema.value("type", "string") == "string";
     found.push_back(
-        {figure_column(path), is_text ? "" : unit_of(path), schema.value("description", std::string())});
+        {figure_column(path), is_text ? "" : unit_of(path), schema.value("description", std::string()), is_text});
   }
 }
 

@@ -16,6 +16,7 @@ struct Figure {
   std::string name;  // its path in point_document(); NAME stands for that of a bank, port, buffer, ..
   std::string unit;  // empty: none
   std::string meaning;
+  bool is_text = false;
 };
 
 // All figures that a point can have, in the order of point_document(). They follow from the keys of

@@ -338,7 +338,7 @@ class Check:
             if left is not None:
                 self.wrong("the fates do not cover the placements", "combination", at, left)
         boards = sum(len(self.placements(at).all) for at, verdict in self.verdicts.items()
-                     if verdict != "impossible")
+                     if verdict not in ("impossible", "excluded"))
         if boards != self.asked["boards"]:
             self.wrong("another number of boards", self.asked["boards"], "expected", boards)
 

@@ -27,22 +27,7 @@ std::optional<double> number_of(const platform::KeyValue& value) {
 
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> names;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto is_of_name = [&](std::size_t place) {
-      const auto c = static_cast<unsigned char>(text[place]);
-      return std::isalnum(c) != 0 || c == '_' || c == '.';
-    };
-    if (text[at] == '\'') {
-      at = std::min(text.find('\'', at + 1), text.size() - 1) + 1;
-    } else if (!is_of_name(at)) {
-      ++at;
-    } else {
-      const std::size_t begin = at;
-      while (at < text.size() && is_of_name(at)) ++at;
-      if (std::isdigit(static_cast<unsigned char>(text[begin])) == 0)
-        names.push_back(text.substr(begin, at - begin));
-    }
-  }
+  for (const NamePlace& name : names_at(text)) names.push_back(text.substr(name.begin, name.end - name.begin));
   return names;
 }
 
@@ -82,7 +67,7 @@ std::vector<std::string> tokens_of(const std::string& text) {
 // Whether it is sure that an expression rises all the way with this figure, or falls: the figure is in it
 // once, with numbers, other names, + - * /, brackets, comparisons, round(), min() and max(). A quotient may
 // jump at one place, which range_along() sees. So what it is divided by has the figure only if none of the
-// last four is there.
+// last four is there. Behind a comma, round() may take the figure for a number of decimals.
 bool is_monotone(const std::string& text, const std::string& figure) {
   static const std::set<std::string> kSigns = {"+", "-", "*", "/", "(", ")", ","};
   static const std::set<std::string> kSteps = {"round", "min", "max", "<", "<=", ">", ">="};
@@ -98,7 +83,10 @@ bool is_monotone(const std::string& text, const std::string& figure) {
     has_step = has_step || is_step;
     divides = divides || (i > 0 && tokens[i - 1] == "/" && !is_number && (!is_name || token == figure));
   }
-  return std::count(tokens.begin(), tokens.end(), figure) == 1 && !(has_step && divides);
+  const auto place = std::find(tokens.begin(), tokens.end(), figure);
+  const bool may_be_decimals = std::count(tokens.begin(), tokens.end(), "round") > 0 &&
+                               std::count(tokens.begin(), place, ",") > 0;
+  return std::count(tokens.begin(), tokens.end(), figure) == 1 && !(has_step && divides) && !may_be_decimals;
 }
 
 }  // namespace

@@ -82,21 +82,30 @@ const KeyEffects& effects_of_key(const std::string& schema_path) {
 
 namespace {
 
+using Keys = std::vector<const platform::Key*>;
+
+// Those that no bank and no allocation has.
+template <typename Have>
+Keys keys_that(const Have& have) {
+  Keys keys;
+  for (const platform::Key& key : platform::board_keys()) {
+    const bool is_placed = key.path.rfind("ssram.", 0) == 0 || key.path.rfind("allocation.", 0) == 0;
+    if (platform::has_value(key) && !is_placed && have(effects_of_key(key.path))) keys.push_back(&key);
+  }
+  return keys;
+}
+
+std::string keys_text(const BoardConfig& board, const Keys& keys) {
+  std::string text;
+  for (const platform::Key* const key : keys)
+    text += (has_key(board, *key) ? platform::value_text(platform::value_of(*key, board)) : "") + '\n';
+  return text;
+}
+
 // The values of the keys that change the cycles, without those of banks and of allocations.
 std::string keys_text(const BoardConfig& board) {
-  static const std::vector<const platform::Key*> kKeys = [] {
-    std::vector<const platform::Key*> keys;
-    for (const platform::Key& key : platform::board_keys()) {
-      const bool is_placed = key.path.rfind("ssram.", 0) == 0 || key.path.rfind("allocation.", 0) == 0;
-      if (platform::has_value(key) && !is_placed && effects_of_key(key.path).core_cycles)
-        keys.push_back(&key);
-    }
-    return keys;
-  }();
-  std::string text;
-  for (const platform::Key* const key : kKeys)
-    text += platform::value_text(platform::value_of(*key, board)) + '\n';
-  return text;
+  static const Keys kKeys = keys_that([](const KeyEffects& effects) { return effects.core_cycles; });
+  return keys_text(board, kKeys);
 }
 
 }  // namespace
@@ -119,6 +128,29 @@ std::string core_cycles_key(const BoardConfig& board) {
       }
     }
     text += '\n';
+  }
+  return text;
+}
+
+// The host sees of the core when its frames end, and where its words go.
+std::string computer_time_key(const BoardConfig& board, const std::vector<std::uint64_t>& frame_cycles) {
+  static const Keys kKeys =
+      keys_that([](const KeyEffects& effects) { return effects.computer_time && !effects.core_cycles; });
+  BoardConfig its = board;
+  if (its.capture.destination == platform::CaptureDestination::kBoard) its.capture.host_frames = 1;  // no ring
+  std::string text = keys_text(its, kKeys) +
+                     fmt::format("{} {} {} {} {}\n", board.image.width, board.image.height,
+                                 board.fpga.joint_tables, board.fpga.pipeline_latency_cycles,
+                                 fmt::join(frame_cycles, " "));
+  const std::vector<memory::SsramBankConfig> configs = ssram_configs(board);
+  std::map<std::string, std::size_t> places;  // of banks, in the order of their first buffers
+  for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {
+    const std::size_t place = places.emplace(buffer.bank, places.size()).first->second;
+    for (std::size_t bank = 0; bank < configs.size(); ++bank) {
+      if (board.banks[bank].name == buffer.bank)
+        text += fmt::format("{} {} {} {}\n", buffer.label(), place,
+                            memory::read_latency_cycles(configs[bank]), board.banks[bank].turnaround_cycles);
+    }
   }
   return text;
 }

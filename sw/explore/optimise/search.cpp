@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "platform/config/board_reader.h"
@@ -119,7 +120,7 @@ bool Search::assess(const std::function<bool()>& keep_going) {
       for (std::size_t goal = 0; goal < goals; ++goal)
         node.best[goal] = bests_[number * goals + goal] = bytes.get<double>();
       node.boards = placements_[number];
-      state_.boards += node.boards;
+      if (verdicts_[number] != Verdict::kExcluded) state_.boards += node.boards;
       if (verdicts_[number] != Verdict::kUnknown) continue;
       nodes_.push(node);
       state_.open += node.boards;
@@ -285,12 +286,15 @@ SearchState Search::state() const {
   SearchState state = state_;
   const bool is_maximum = space_.is_maximum(0);
   state.has_best = !front().empty();
-  if (state.has_best) state.best = front_.bests_of(front().front().values).front();
-  state.bound = nodes_.empty() ? state.best : std::max(nodes_.top().best[0], state.best);
-  if (!is_maximum) {
-    state.best = -state.best;
-    state.bound = -state.bound;
+  double best = -std::numeric_limits<double>::infinity();
+  double bound = nodes_.empty() ? best : nodes_.top().best[0];
+  for (const FrontPoint& point : front()) {
+    const Range& value = point.values.front();
+    best = std::max(best, is_maximum ? value.least : -value.most);
+    bound = std::max(bound, is_maximum ? value.most : -value.least);
   }
+  state.best = is_maximum ? best : -best;
+  state.bound = is_maximum ? bound : -bound;
   return state;
 }
 

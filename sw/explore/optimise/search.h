@@ -24,8 +24,8 @@ struct SearchState {
   bool is_counted = false;      // all of them
   std::uint64_t open = 0;       // not decided yet, at most
   std::uint64_t simulated = 0;  // runs
-  double best = 0;              // of the first goal
-  double bound = 0;             // of the first goal: of the open boards and the best
+  double best = 0;              // of the first goal: the most that a board is certain to have, or the least
+  double bound = 0;             // of the first goal: the most that a board can have, or the least
   bool has_best = false;
 };
 

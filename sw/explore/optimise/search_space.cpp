@@ -50,12 +50,12 @@ std::string nearest_name(const std::string& message, const std::set<std::string>
   const std::string unknown = "no such column: ";
   if (message.rfind(unknown, 0) != 0) return "";
   const std::string name = message.substr(unknown.size());
-  if (figures.count(name) > 0 || stats::find_figure(name) != nullptr || platform::find_key(name) != nullptr)
-    return std::count(name.begin(), name.end(), '.') > 1 ? "; a figure of three parts or more stands alone"
-                                                         : "; write it without quotes";
+  const platform::Key* const key = platform::find_key(name);
+  if (figures.count(name) > 0 || stats::find_figure(name) != nullptr || key != nullptr)
+    return key != nullptr && !platform::has_value(*key) ? kNoValueOfBoard : "; write it without quotes";
   std::vector<std::string> names = stats::figure_names_like(name);
   names.insert(names.end(), figures.begin(), figures.end());
-  for (const platform::Key& key : platform::board_keys()) names.push_back(key.path);
+  for (const platform::Key& each : platform::board_keys()) names.push_back(each.path);
   const auto is_form = [](const std::string& one) { return one.find("NAME") != std::string::npos; };
   names.erase(std::remove_if(names.begin(), names.end(), is_form), names.end());
   const std::string nearest = platform::nearest_path(name, names);
@@ -88,7 +88,10 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
   std::vector<platform::Diagnostic> problems;
   const auto add = [&](const Condition& text, std::vector<Expression>& to) {
     for (const std::string& name : names_in(text.text)) {
-      if (stats::find_figure(name) != nullptr) names.insert(name);
+      const stats::Figure* const figure = stats::find_figure(name);
+      if (figure != nullptr) names.insert(name);
+      if (figure != nullptr && figure->is_text)
+        problems.push_back({text.place, fmt::format("{}: {}: a text; goals and conditions take numbers", text.name, name)});
       if (name.rfind(kExact, 0) == 0 && name != kExactLeast)  // and the numbers of the fraction
         problems.push_back(
             {text.place, fmt::format("{}: not every board has a proven rate: give {}, which is "
@@ -113,7 +116,13 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
     add(goal.figure, goals_);
     maxima_.push_back(goal.is_maximum);
   }
-  for (const Condition& requirement : wishes.requirements) add(requirement, requirements_);
+  for (const Condition& requirement : wishes.requirements) {
+    add(requirement, requirements_);
+    const std::string& text = requirement.text;
+    if (names.count(text) > 0 || platform::find_key(text) != nullptr)
+      problems.push_back(
+          {requirement.place, fmt::format("{}: no condition: compare it with a number", requirement.name)});
+  }
   if (wishes.goals.empty())
     problems.push_back({plan.path(),
                         "no goal: give maximise or minimise, such as maximise: "
@@ -468,8 +477,6 @@ std::vector<double> SearchSpace::simulate(Combination& of, const Placements::Gro
       values.push_back(static_cast<double>(*integer));
     } else if (const auto* const real = std::get_if<double>(&found->value)) {
       values.push_back(*real);
-    } else {
-      throw std::runtime_error(fmt::format("{}: a text, which is no goal", name));
     }
   }
   return values;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <string_view>
 
@@ -39,6 +40,22 @@ const std::set<std::string>& names_of_conditions() {
   return kNames;
 }
 
+// The same expression with ssram."default.kind" for ssram.default.kind.
+std::string with_columns(const std::string& text) {
+  std::string result;
+  std::size_t done = 0;
+  for (const NamePlace& name : names_at(text)) {
+    const std::size_t dot = text.find('.', name.begin);
+    const bool is_quoted = name.begin > 0 && text[name.begin - 1] == '"';
+    const bool is_long = dot < name.end && text.find('.', dot + 1) < name.end;
+    if (is_quoted || !is_long || text[name.end - 1] == '.') continue;
+    result += fmt::format("{}\"{}\"", text.substr(done, dot + 1 - done),
+                          text.substr(dot + 1, name.end - dot - 1));
+    done = name.end;
+  }
+  return result + text.substr(done);
+}
+
 // The column of a name "table.column".
 std::string column_of(const std::string& name) { return name.substr(name.find('.') + 1); }
 
@@ -65,6 +82,8 @@ std::string with_nearest(const std::string& reason) {
   if (names_of_conditions().count(name) > 0) return reason + "; write the key without quotes";
   if (stats::find_figure(name) != nullptr)
     return reason + "; a figure is not known before the point is simulated";
+  if (const platform::Key* const key = platform::find_key(name); key != nullptr && !platform::has_value(*key))
+    return reason + kNoValueOfBoard;
   const std::set<std::string>& names = names_of_conditions();
   const std::string nearest = platform::nearest_path(name, {names.begin(), names.end()});
   return nearest.empty() ? reason : reason + "; nearest: " + nearest;
@@ -81,6 +100,26 @@ std::set<std::string> allowed_functions(const sqlite::Database& database) {
 }
 
 }  // namespace
+
+std::vector<NamePlace> names_at(const std::string& text) {
+  const auto is_of_name = [&](std::size_t place) {
+    const auto c = static_cast<unsigned char>(text[place]);
+    return std::isalnum(c) != 0 || c == '_' || c == '.';
+  };
+  std::vector<NamePlace> names;
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == '\'') {
+      at = std::min(text.find('\'', at + 1), text.size() - 1) + 1;
+    } else if (!is_of_name(at)) {
+      ++at;
+    } else {
+      const std::size_t begin = at;
+      while (at < text.size() && is_of_name(at)) ++at;
+      if (std::isdigit(static_cast<unsigned char>(text[begin])) == 0) names.push_back({begin, at});
+    }
+  }
+  return names;
+}
 
 // Compiles each text twice. First without brackets, at the end of a statement, which refuses unbalanced
 // quotes and brackets; SQLite's message then quotes only the text. Then in brackets, which refuses a clause
@@ -102,10 +141,11 @@ Conditions::Conditions(const std::vector<Condition>& conditions, const std::vect
   const std::string no_point = tables_text(parameters_, false);
   const std::string point = tables_text(parameters_, true);
   for (const Condition& condition : conditions) {
-    const auto alone = compile(fmt::format("SELECT 1{} WHERE {}", no_point, condition.text));
+    const std::string expression = with_columns(condition.text);
+    const auto alone = compile(fmt::format("SELECT 1{} WHERE {}", no_point, expression));
     if (sqlite3_bind_parameter_count(alone->handle()) > 0)
       throw std::invalid_argument("parameters such as ? and :x have no value");
-    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)){}", condition.text, point))});
+    compiled_.push_back({condition, compile(fmt::format("SELECT (({}\n)){}", expression, point))});
   }
   sqlite3_limit(database_.handle(), SQLITE_LIMIT_LENGTH, kMostBytes);
   const auto exceeds_steps = [](void* self) {

@@ -76,6 +76,16 @@ struct Condition {
   std::string name;   // for messages: "where = image.width > 4"
 };
 
+// The names in an SQL text, with all their dots; words of SQL are names too. What is in single quotes is not.
+struct NamePlace {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+std::vector<NamePlace> names_at(const std::string& text);
+
+// What to say of the name of a key that is there for each bank, or for those that give none of their own.
+inline constexpr const char* kNoValueOfBoard = "; a key of banks, which may differ in it";
+
 // A sequence of points. Each point is made from its number when it is needed, and not stored.
 struct Points {
   std::uint64_t size = 0;

@@ -17,17 +17,17 @@ namespace stereotlm::runs {
 
 PointQuality::PointQuality(explore::Plan& plan, process::Problems& problems) : seeds_(plan.seeds()) {
   std::string hashes;
-  media::Size size;  // of the first picture
+  std::string first;  // picture that could be read
+  media::Size size;   // of it
   for (const explore::PlanPair& files : plan.pairs()) {
     Pair& pair = pairs_.emplace_back();
     const auto load = [&](const char* name, const std::string& path, const auto& read) {
       problems.attempt(fmt::format("{}: {}.{} ", files.place, explore::kPairsPath, name), [&] {
         const media::Size its = read(path);
-        if (hashes.empty()) size = its;
+        if (first.empty()) std::tie(first, size) = std::tie(path, its);
         if (!(its == size)) {
           throw std::runtime_error(fmt::format("'{}': {}x{} pixels: must be as large as '{}', {}x{}", path,
-                                               its.width, its.height, plan.pairs().front().left, size.width,
-                                               size.height));
+                                               its.width, its.height, first, size.width, size.height));
         }
         hashes += files::sha256_file(path) + '\n';
       });

@@ -22,7 +22,7 @@ class LongWork(ProgramTest):
                                          signal.SIGINT)
         self.assertEqual(status, 130)
         self.assertRegex(terminal.text, r"\d+ boards are simulated, for at most 42 frames each, cycle by ")
-        return out, re.search(r"note: interrupted: (\d+ of \d+ changes were simulated)", terminal.text)[1]
+        return out, re.search(r"note: interrupted: (\d+ of \d+ changes were evaluated)", terminal.text)[1]
 
     def test_explain_and_report_keep_what_is_simulated(self):
         out, kept = self.interrupted("explain", *SLOW)

@@ -276,6 +276,23 @@ class Optimise(ProgramTest):
             (distance, boards), = self.values(plan, "--minimise", goal)
             self.assertAlmostEqual(distance, min(abs(rate - aim - 0.01) for rate in rates), 9)
             self.assertGreater(boards, 0)
+        # With the number of decimals the value rises and falls, so a bound would rule out the best.
+        decimals = "round(3.14159265, frames_per_second.core / 600)"
+        places = sorted({float(f"{3.14159265:.{int(rate / 600)}f}") for rate in rates})
+        self.assertGreater(len(places), 2)
+        self.assertEqual(self.values(plan, "--maximise", decimals)[0][0], places[-1])
+        self.assertEqual(self.values(plan, "--minimise", decimals)[0][0], places[0])
+
+    def test_names_of_three_parts_stand_in_expressions(self):
+        plan = self.plan("board: fpl2003-qvga\nrun: {source: preloaded}\nvary:\n  matcher.rows: [1, 2]\n"
+                         "  pci.load: [{burst_words: 8, interval_us: 10}, {burst_words: 9, interval_us: 10}]\n"
+                         "where: pci.load.burst_words * 2 > 16\n")
+        grants = "ports.left_pixel.grants"
+        alone = self.values(plan, "--minimise", grants)
+        self.assertEqual(alone[0][1], 1)  # `where` leaves half of the boards
+        self.assertEqual(self.values(plan, "--minimise", f"{grants} + pci.load.burst_words * 0.5"),
+                         [[alone[0][0] + 4.5, 1]])
+        self.assertEqual(self.found(plan, "--minimise", "pins")["boards"], 2)  # those that `where` leaves
 
     def test_all_boards_that_the_cameras_hold_at_60_tie(self):
         """The time of a frame at 60 Hz is no whole number of ps."""
@@ -362,6 +379,18 @@ maximise: frames_per_second.steady
              "them"),
             (["optimise", "fpl2003", "--banks", 8, "--stripes", 4, "--minimise", "pins"],
              "placements: more than 5000000 different placements: give fewer banks, stripes or buffers"),
+            (["optimise", "fpl2003", "--banks", 9, "--minimise", "pins"],
+             "--banks = 9: must be 1..8, the banks of the board; --set 'ssram.banks.NEW={}' gives it one more"),
+            (["optimise", "fpl2003", "--stripes", 4, "--minimise", "pins"],
+             "placements: more than 5000000 different placements"),
+            (["optimise", self.file("own.yaml", PLAN.replace("placements: {banks: 3}\n", "")), "--stripes", 4],
+             "--stripes: goes with --banks N, or with placements in the plan"),
+            (["optimise", "fpl2003", "--minimise", "smallest_device"],
+             "--minimise: smallest_device: smallest_device: a text; goals and conditions take numbers"),
+            (["optimise", "fpl2003", "--minimise", "pins", "--for", "area.slices"],
+             "--for: area.slices: no condition: compare it with a number"),
+            (["optimise", "fpl2003", "--minimise", "pins", "--for", "ssram.default.kind = 'qdr'"],
+             "no such column: ssram.default.kind; a key of banks, which may differ in it"),
             (["optimise", self.plan(), "--why", "matcher.unitz=3"],
              "--why: matcher.unitz = 3: unknown key; nearest known key: matcher.units"),
             (["optimise", self.file("camera.yaml", COMPUTER + "run: {source: camera}\n"), "--minimise",

@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "platform/config/board_area.h"
 #include "platform/config/board_keys.h"
 #include "platform/config/board_yaml.h"
+#include "platform/figures/bounds.h"
+#include "platform/figures/proven_rate.h"
 #include "platform/loop/core_loop.h"
 #include "sw/explore/plan/knobs.h"
 #include "sw/runs/simulation/simulate_point.h"
@@ -87,6 +92,53 @@ TEST(KeyEffects, WhatAKeyDoesNotChangeStays) {
     }
   }
   EXPECT_GT(changed.size(), 20U);
+}
+
+// Whether a figure is of what the core accesses, or of the board without a run.
+bool is_of_core(const std::string& path) {
+  const std::string section = path.substr(0, path.find('.'));
+  static const std::set<std::string> kSections = {"ports", "banks", "energy", "area", "pins", "smallest_device"};
+  return kSections.count(section) > 0 || path.rfind("bound.", 0) == 0 || path.rfind("frames_per_second.exact", 0) == 0;
+}
+
+// Steps of a board that have the same key: what the computer does is the same at each time.
+TEST(KeyEffects, ComputersOfTheSameTimeDoTheSame) {
+  const char* const kSyncBurst = "ssram.default={words: 524288, kind: sync_burst, turnaround_cycles: 2}";
+  const std::vector<std::pair<const char*, std::vector<std::string>>> boards = {
+      {"fpl2003", {}},
+      {"fpl2003", {"fpga.arbitration=round_robin", kSyncBurst}},
+      {"fpl2003", {"allocation.left_lut=bank0", "allocation.right_lut=bank0"}},
+      {"fpl2003", {"allocation.left_lut=bank7", "ssram.default.kind=qdr"}},
+      {"fpl2003-triple", {"bridge.posted_words=4", "capture.fifo_words=8", "capture.fifo_trigger_words=4"}},
+      {"four-rows", {"pci.clock_mhz=8"}},
+      {"two-banks", {"fpga.arbitration=age"}}};
+  std::size_t shared = 0;
+  for (const auto& [preset, sets] : boards) {
+    std::vector<std::string> all = {"image={width: 32, height: 24}", "cameras.frame_rate_hz=900"};
+    all.insert(all.end(), sets.begin(), sets.end());
+    const BoardConfig board = platform::load_board(preset, all);
+    std::map<std::string, std::pair<std::string, Figures>> first;
+    for (const KnobStep& step : knob_steps(board, true, std::nullopt).possible) {
+      const platform::Tables tables = platform::identity_tables(step.board);
+      if (!platform::frames_are_apart(step.board, platform::frame_accesses(step.board, tables))) continue;
+      const std::uint64_t turn = platform::allocation_period_frames(step.board);
+      const std::string key = computer_time_key(
+          step.board, platform::core_frame_cycles(step.board, platform::access_patterns(step.board, &tables), turn));
+      Figures figures = runs::PointSimulator()(make_point(0, step.board, {true, 12, ""}));
+      const std::string name = std::string(preset) + ": " + step.knob + " -> " + step.to;
+      const auto [of_key, is_first] = first.emplace(key, std::pair(name, figures));
+      if (is_first) continue;
+      SCOPED_TRACE(of_key->second.first + "; " + name);
+      ++shared;
+      std::map<std::string, platform::KeyValue> values;
+      for (const platform::BoardValue& value : of_key->second.second.values) values[value.path] = value.value;
+      for (const platform::BoardValue& value : figures.values) {
+        if (is_of_core(value.path)) continue;
+        EXPECT_EQ(value.value, values[value.path]) << value.path;
+      }
+    }
+  }
+  EXPECT_GT(shared, 100U);
 }
 
 }  // namespace
