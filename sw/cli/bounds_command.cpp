@@ -211,7 +211,8 @@ std::string text_of(const BoardBounds& all) {
   std::size_t width = 16;
   for (const platform::RateBound& part : all.computer)
     width = std::max(width, stats::resource_text(part.resource).size());
-  text += fmt::format("the whole computer, with all masters\n  {:<{}} {:>14}\n", "resource", width, "frames/s");
+  text +=
+      fmt::format("the whole computer, with all masters\n  {:<{}} {:>14}\n", "resource", width, "frames/s");
   for (const platform::RateBound& part : all.computer)
     text += fmt::format("  {:<{}} {:>14.3f}\n", stats::resource_text(part.resource), width,
                         part.frames_per_second);

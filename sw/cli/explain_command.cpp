@@ -76,13 +76,13 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
   };
   std::vector<Line> lines;
   for (const Explanation::Resource& resource : explanation.resources()) {
-    Line line = {resource.name.substr(0, resource.name.find(' ') + 1),
-                 fmt::format("{:>12.2f} {:>8.2f} {:>14.3f}",
-                             files::without_minus_zero(resource.headroom_percent, 2), resource.busy_percent,
-                             resource.frames_per_second),
-                 resource.varies ? fmt::format(", in frame {} of {}", resource.frame,
-                                               platform::allocation_period_frames(board))
-                                 : ""};
+    Line line = {
+        resource.name.substr(0, resource.name.find(' ') + 1),
+        fmt::format("{:>12.2f} {:>8.2f} {:>14.3f}", files::without_minus_zero(resource.headroom_percent, 2),
+                    resource.busy_percent, resource.frames_per_second),
+        resource.varies
+            ? fmt::format(", in frame {} of {}", resource.frame, platform::allocation_period_frames(board))
+            : ""};
     auto same = std::find_if(lines.begin(), lines.end(), [&line](const Line& other) {
       return !line.kind.empty() && other.kind == line.kind && other.values == line.values &&
              other.frame == line.frame;
@@ -99,9 +99,8 @@ std::string resources_text(const BoardConfig& board, const Explanation& explanat
       fmt::format("  {:>12} {:>8} {:>14}  {}\n", "headroom %", "busy %", "bound frames/s", "resource");
   for (Line& line : lines) {
     const bool are_ports = line.kind == "port ";
-    std::stable_sort(line.names.begin(), line.names.end(), [&](const auto& a, const auto& b) {
-      return place_of_bank(a) < place_of_bank(b);
-    });
+    std::stable_sort(line.names.begin(), line.names.end(),
+                     [&](const auto& a, const auto& b) { return place_of_bank(a) < place_of_bank(b); });
     for (std::string& name : line.names)
       name = are_ports ? name.substr(line.kind.size()) : stats::resource_text(name);
     text += fmt::format("  {}  {}{}{}\n", line.values, are_ports ? line.kind : "",

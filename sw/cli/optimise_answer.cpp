@@ -265,9 +265,9 @@ std::string text_of(const Answer& answer, const explore::BoardModel& model, unsi
                                   answer.impossible.count == 1 ? " is" : "s are"),
                       2, search.board({answer.impossible.first, 0}).reason);
   if (search.front().empty()) {
-    text += !answer.is_proven    ? "no board so far\n"
-            : !has_board         ? no_board_text(search)
-                                 : empty_text(answer.question, model, processes);
+    text += !answer.is_proven ? "no board so far\n"
+            : !has_board      ? no_board_text(search)
+                              : empty_text(answer.question, model, processes);
   } else {
     text += front_text(search, plan);
     if (search.front().size() == 1) {

@@ -34,7 +34,8 @@ int optimise(const OptimiseOptions& options) {
       runs::board_model(calibration ? &calibration->tables : nullptr, std::move(quality));
   const unsigned processes =
       options.jobs.number<unsigned>().value_or(std::max(1U, std::thread::hardware_concurrency()));
-  check_jobs(processes, processes);
+  check_jobs(processes,
+             question.wishes.most_banks > 0 ? processes : std::min<std::uint64_t>(processes, plan.size()));
   std::unique_ptr<Search> search;
   process::attempt_or_refuse(
       "", [&] { search = std::make_unique<Search>(plan, question.wishes, model, processes); });

@@ -35,9 +35,8 @@ struct OptimiseOptions : Options {
   Option minima = Option(this, "--minimise", "FIGURE", "The same, that is to be small", {}, Takes::kRepeated);
   Option banks = Option(this, "--banks", "N", "Place the buffers in at most N banks, in every different way",
                         {number<int>("1..64", [](int n) { return n >= 1 && n <= 64; })});
-  Option stripes =
-      Option(this, "--stripes", "M", "Each buffer in one bank, or striped over up to M",
-             {number<int>("1..16", [](int n) { return n >= 1 && n <= 16; })});
+  Option stripes = Option(this, "--stripes", "M", "Each buffer in one bank, or striped over up to M",
+                          {number<int>("1..16", [](int n) { return n >= 1 && n <= 16; })});
   Option source = Option(this, "--source", "camera|preloaded",
                          "The whole computer, the default where a goal or condition needs it, or the "
                          "core alone; a plan says it in run.source",

@@ -442,10 +442,10 @@ void Explanation::prove(ProgressLine& progress) {
     Json proven = {{"work_pj", work_pj}, {"busiest", {busiest.name, busiest.accesses_per_frame}}};
     if (!stepped_text(board, tables_, false).empty()) return proven;
     const std::vector<std::uint64_t> cycles = platform::core_frame_cycles(board, patterns, turn);
-    const auto rate =
-        platform::proven_rate(board, accesses, cycles, platform::steady_bound(board, accesses));
+    const auto rate = platform::proven_rate(board, accesses, cycles, platform::steady_bound(board, accesses));
     proven["rate"] = {rate->least, rate->most};
-    if (platform::frames_are_apart(board, accesses)) proven["time"] = explore::computer_time_key(board, cycles);
+    if (platform::frames_are_apart(board, accesses))
+      proven["time"] = explore::computer_time_key(board, cycles);
     return proven;
   };
   for_each(all, "examined", progress, work, [this](std::size_t number, const Json& its) {

@@ -82,7 +82,8 @@ class Explanation {
   std::uint64_t frames() const { return explore::frames_of(run_, board_); }
   bool camera() const { return run_.camera; }
 
-  // The bank with the most accesses in a frame, in the long run.
+  // The bank with the most accesses for a frame. Of a whole computer these are those of the long run, with all
+  // that the host moves, also between two frames.
   struct BusiestBank {
     std::string name;
     double accesses_per_frame = 0;  // with separate ports: the larger of its reads and its writes
@@ -97,8 +98,8 @@ class Explanation {
   // those that have failed last. Of a group only the best. A step is not simulated if it is proven that it
   // does not exceed the rate of another one of its group by more than its uncertainty.
   const std::vector<Step>& steps() const { return steps_; }
-  // How many of knobs().possible were simulated, and how many others share the simulation of one of them or of
-  // the board itself, because both do the same at the same time.
+  // How many of knobs().possible were simulated, and how many others share the simulation of one of them or
+  // of the board itself, because both do the same at the same time.
   std::size_t simulated() const { return evaluated_ - shared_; }
   std::size_t shared() const { return shared_; }
   // How many of them were left out for that.

@@ -63,8 +63,8 @@ void collect(const std::string& path, const Schema& schema, std::vector<Figure>&
     collect(platform::below(path, std::string(kName)), schema["items"], found);
   } else {
     const bool is_text = schema.value("type", "string") == "string";
-    found.push_back(
-        {figure_column(path), is_text ? "" : unit_of(path), schema.value("description", std::string()), is_text});
+    found.push_back({figure_column(path), is_text ? "" : unit_of(path),
+                     schema.value("description", std::string()), is_text});
   }
 }
 

@@ -27,7 +27,8 @@ std::optional<double> number_of(const platform::KeyValue& value) {
 
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> names;
-  for (const NamePlace& name : names_at(text)) names.push_back(text.substr(name.begin, name.end - name.begin));
+  for (const NamePlace& name : names_at(text))
+    names.push_back(text.substr(name.begin, name.end - name.begin));
   return names;
 }
 
@@ -84,8 +85,8 @@ bool is_monotone(const std::string& text, const std::string& figure) {
     divides = divides || (i > 0 && tokens[i - 1] == "/" && !is_number && (!is_name || token == figure));
   }
   const auto place = std::find(tokens.begin(), tokens.end(), figure);
-  const bool may_be_decimals = std::count(tokens.begin(), tokens.end(), "round") > 0 &&
-                               std::count(tokens.begin(), place, ",") > 0;
+  const bool may_be_decimals =
+      std::count(tokens.begin(), tokens.end(), "round") > 0 && std::count(tokens.begin(), place, ",") > 0;
   return std::count(tokens.begin(), tokens.end(), figure) == 1 && !(has_step && divides) && !may_be_decimals;
 }
 

@@ -137,11 +137,12 @@ std::string computer_time_key(const BoardConfig& board, const std::vector<std::u
   static const Keys kKeys =
       keys_that([](const KeyEffects& effects) { return effects.computer_time && !effects.core_cycles; });
   BoardConfig its = board;
-  if (its.capture.destination == platform::CaptureDestination::kBoard) its.capture.host_frames = 1;  // no ring
-  std::string text = keys_text(its, kKeys) +
-                     fmt::format("{} {} {} {} {}\n", board.image.width, board.image.height,
-                                 board.fpga.joint_tables, board.fpga.pipeline_latency_cycles,
-                                 fmt::join(frame_cycles, " "));
+  if (its.capture.destination == platform::CaptureDestination::kBoard)
+    its.capture.host_frames = 1;  // no ring
+  std::string text =
+      keys_text(its, kKeys) + fmt::format("{} {} {} {} {}\n", board.image.width, board.image.height,
+                                          board.fpga.joint_tables, board.fpga.pipeline_latency_cycles,
+                                          fmt::join(frame_cycles, " "));
   const std::vector<memory::SsramBankConfig> configs = ssram_configs(board);
   std::map<std::string, std::size_t> places;  // of banks, in the order of their first buffers
   for (const platform::PlacedBuffer& buffer : platform::buffers(board)) {

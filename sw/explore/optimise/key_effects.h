@@ -25,11 +25,13 @@ const KeyEffects& effects_of_key(const std::string& schema_path);
 // Boards with the same text take the same cycles for each frame of the core alone. Of the banks only those
 // that hold a buffer matter.
 std::string core_cycles_key(const platform::BoardConfig& board);
-// Computers with the same text do the same at the same time, but for the accesses of their cores, if the frames
-// of both are apart (platform::frames_are_apart()). `frame_cycles`: of the core alone, for a turn of the lists.
+// Computers with the same text do the same at the same time, but for the accesses of their cores, if the
+// frames of both are apart (platform::frames_are_apart()). `frame_cycles`: of the core alone, for a turn of
+// the lists.
 std::string computer_time_key(const platform::BoardConfig& board,
                               const std::vector<std::uint64_t>& frame_cycles);
-// core_cycles_key() if no port ever waits for a bank: of the banks only the read latency of each buffer matters.
+// core_cycles_key() if no port ever waits for a bank: of the banks only the read latency of each buffer
+// matters.
 std::string waitless_key(const platform::BoardConfig& board);
 
 }  // namespace stereotlm::explore

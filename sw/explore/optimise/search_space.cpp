@@ -50,12 +50,12 @@ std::string nearest_name(const std::string& message, const std::set<std::string>
   const std::string unknown = "no such column: ";
   if (message.rfind(unknown, 0) != 0) return "";
   const std::string name = message.substr(unknown.size());
-  const platform::Key* const key = platform::find_key(name);
-  if (figures.count(name) > 0 || stats::find_figure(name) != nullptr || key != nullptr)
-    return key != nullptr && !platform::has_value(*key) ? kNoValueOfBoard : "; write it without quotes";
+  if (const std::string remark = bank_key_remark(name); !remark.empty()) return remark;
+  if (figures.count(name) > 0 || stats::find_figure(name) != nullptr || platform::find_key(name) != nullptr)
+    return "; write it without quotes";
   std::vector<std::string> names = stats::figure_names_like(name);
   names.insert(names.end(), figures.begin(), figures.end());
-  for (const platform::Key& each : platform::board_keys()) names.push_back(each.path);
+  for (const platform::Key& key : platform::board_keys()) names.push_back(key.path);
   const auto is_form = [](const std::string& one) { return one.find("NAME") != std::string::npos; };
   names.erase(std::remove_if(names.begin(), names.end(), is_form), names.end());
   const std::string nearest = platform::nearest_path(name, names);
@@ -91,7 +91,8 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
       const stats::Figure* const figure = stats::find_figure(name);
       if (figure != nullptr) names.insert(name);
       if (figure != nullptr && figure->is_text)
-        problems.push_back({text.place, fmt::format("{}: {}: a text; goals and conditions take numbers", text.name, name)});
+        problems.push_back({text.place, fmt::format("{}: {} is a text: goals and conditions take numbers",
+                                                    text.name, name)});
       if (name.rfind(kExact, 0) == 0 && name != kExactLeast)  // and the numbers of the fraction
         problems.push_back(
             {text.place, fmt::format("{}: not every board has a proven rate: give {}, which is "
@@ -118,8 +119,10 @@ SearchSpace::SearchSpace(const Plan& plan, const SearchWishes& wishes, const Boa
   }
   for (const Condition& requirement : wishes.requirements) {
     add(requirement, requirements_);
-    const std::string& text = requirement.text;
-    if (names.count(text) > 0 || platform::find_key(text) != nullptr)
+    const std::vector<std::string> all = names_in(requirement.text);
+    const bool is_one =
+        all.size() == 1 && requirement.text.find_first_not_of(all.front() + " ()") == std::string::npos;
+    if (is_one && (names.count(all.front()) > 0 || platform::find_key(all.front()) != nullptr))
       problems.push_back(
           {requirement.place, fmt::format("{}: no condition: compare it with a number", requirement.name)});
   }

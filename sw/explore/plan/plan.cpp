@@ -567,10 +567,6 @@ class PlanReader {
         report("where", item, "an SQL expression over keys, such as image.width * image.height <= 307200");
         continue;
       }
-      if (platform::find_key(item.text) != nullptr) {
-        report("where", item, "no condition: compare the key with a value");
-        continue;
-      }
       try {
         const Condition condition = {item.text, place_text(item.place), "where = " + short_text(item)};
         const Conditions compiled({condition});

@@ -46,11 +46,10 @@ std::string with_columns(const std::string& text) {
   std::size_t done = 0;
   for (const NamePlace& name : names_at(text)) {
     const std::size_t dot = text.find('.', name.begin);
-    const bool is_quoted = name.begin > 0 && text[name.begin - 1] == '"';
     const bool is_long = dot < name.end && text.find('.', dot + 1) < name.end;
-    if (is_quoted || !is_long || text[name.end - 1] == '.') continue;
-    result += fmt::format("{}\"{}\"", text.substr(done, dot + 1 - done),
-                          text.substr(dot + 1, name.end - dot - 1));
+    if (name.is_quoted || !is_long || text[name.end - 1] == '.') continue;
+    result +=
+        fmt::format("{}\"{}\"", text.substr(done, dot + 1 - done), text.substr(dot + 1, name.end - dot - 1));
     done = name.end;
   }
   return result + text.substr(done);
@@ -82,8 +81,7 @@ std::string with_nearest(const std::string& reason) {
   if (names_of_conditions().count(name) > 0) return reason + "; write the key without quotes";
   if (stats::find_figure(name) != nullptr)
     return reason + "; a figure is not known before the point is simulated";
-  if (const platform::Key* const key = platform::find_key(name); key != nullptr && !platform::has_value(*key))
-    return reason + kNoValueOfBoard;
+  if (const std::string remark = bank_key_remark(name); !remark.empty()) return reason + remark;
   const std::set<std::string>& names = names_of_conditions();
   const std::string nearest = platform::nearest_path(name, {names.begin(), names.end()});
   return nearest.empty() ? reason : reason + "; nearest: " + nearest;
@@ -106,19 +104,41 @@ std::vector<NamePlace> names_at(const std::string& text) {
     const auto c = static_cast<unsigned char>(text[place]);
     return std::isalnum(c) != 0 || c == '_' || c == '.';
   };
+  // Where a part that begins here ends.
+  const auto behind = [&](std::size_t place, std::string_view end) {
+    const std::size_t found = text.find(end, place);
+    return found == std::string::npos ? text.size() : found + end.size();
+  };
   std::vector<NamePlace> names;
+  char quote = '\0';  // the end of the quotes in which `at` is
   for (std::size_t at = 0; at < text.size();) {
-    if (text[at] == '\'') {
-      at = std::min(text.find('\'', at + 1), text.size() - 1) + 1;
-    } else if (!is_of_name(at)) {
-      ++at;
-    } else {
+    const char c = text[at];
+    if (is_of_name(at)) {
       const std::size_t begin = at;
       while (at < text.size() && is_of_name(at)) ++at;
-      if (std::isdigit(static_cast<unsigned char>(text[begin])) == 0) names.push_back({begin, at});
+      if (std::isdigit(static_cast<unsigned char>(c)) == 0) names.push_back({begin, at, quote != '\0'});
+    } else if (quote != '\0') {
+      if (c == quote) quote = '\0';
+      ++at;
+    } else if (c == '\'') {
+      at = behind(at + 1, "'");
+    } else if (text.compare(at, 2, "--") == 0) {
+      at = behind(at, "\n");
+    } else if (text.compare(at, 2, "/*") == 0) {
+      at = behind(at + 2, "*/");
+    } else {
+      if (c == '"' || c == '`') quote = c;
+      if (c == '[') quote = ']';
+      ++at;
     }
   }
   return names;
+}
+
+std::string bank_key_remark(const std::string& name) {
+  const platform::Key* const key = platform::find_key(name);
+  const bool is_of_banks = key != nullptr && !platform::has_value(*key) && key->path.rfind("ssram.", 0) == 0;
+  return is_of_banks ? "; a key of banks, which may differ in it" : "";
 }
 
 // Compiles each text twice. First without brackets, at the end of a statement, which refuses unbalanced

@@ -76,15 +76,17 @@ struct Condition {
   std::string name;   // for messages: "where = image.width > 4"
 };
 
-// The names in an SQL text, with all their dots; words of SQL are names too. What is in single quotes is not.
+// A name in an SQL text, with all its dots; words of SQL are names too.
 struct NamePlace {
   std::size_t begin = 0;
   std::size_t end = 0;
+  bool is_quoted = false;  // or in [brackets] or `backticks`
 };
+// All but those in strings and comments.
 std::vector<NamePlace> names_at(const std::string& text);
 
-// What to say of the name of a key that is there for each bank, or for those that give none of their own.
-inline constexpr const char* kNoValueOfBoard = "; a key of banks, which may differ in it";
+// "; a key of banks, which may differ in it" for such a key, which no board as a whole has; else empty.
+std::string bank_key_remark(const std::string& name);
 
 // A sequence of points. Each point is made from its number when it is needed, and not stored.
 struct Points {

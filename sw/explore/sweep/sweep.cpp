@@ -255,9 +255,15 @@ class Sweep {
     {  // One message for an unusable file, instead of one from each worker.
       const Store made(options.store, options.version, options.busy_timeout);
     }
-    std::exception_ptr problem;  // SQLite calls without letting exceptions through
+    std::exception_ptr problem;    // SQLite calls without letting exceptions through
+    std::exception_ptr condition;  // one that cannot be computed; what is done is kept all the same
     try {
-      run_points(lock, keep_going);
+      try {
+        run_points(lock, keep_going);
+      } catch (const ConditionError&) {
+        condition = std::current_exception();
+        workers_.clear();  // ends them
+      }
       merge_stores({options.store}, options.store, [&] {
         try {
           keep_going(state_.claims.counts());
@@ -271,6 +277,7 @@ class Sweep {
       lock.check();  // if the file is gone, that is the reason for the error
       throw;
     }
+    if (condition) std::rethrow_exception(condition);
     return state_.claims.counts();
   }
 

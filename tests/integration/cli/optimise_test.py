@@ -284,9 +284,9 @@ class Optimise(ProgramTest):
         self.assertEqual(self.values(plan, "--minimise", decimals)[0][0], places[0])
 
     def test_names_of_three_parts_stand_in_expressions(self):
+        loads = ", ".join(f"{{burst_words: {words}, interval_us: 10}}" for words in (8, 9))
         plan = self.plan("board: fpl2003-qvga\nrun: {source: preloaded}\nvary:\n  matcher.rows: [1, 2]\n"
-                         "  pci.load: [{burst_words: 8, interval_us: 10}, {burst_words: 9, interval_us: 10}]\n"
-                         "where: pci.load.burst_words * 2 > 16\n")
+                         f"  pci.load: [{loads}]\nwhere: pci.load.burst_words * 2 > 16\n")
         grants = "ports.left_pixel.grants"
         alone = self.values(plan, "--minimise", grants)
         self.assertEqual(alone[0][1], 1)  # `where` leaves half of the boards
@@ -380,15 +380,19 @@ maximise: frames_per_second.steady
             (["optimise", "fpl2003", "--banks", 8, "--stripes", 4, "--minimise", "pins"],
              "placements: more than 5000000 different placements: give fewer banks, stripes or buffers"),
             (["optimise", "fpl2003", "--banks", 9, "--minimise", "pins"],
-             "--banks = 9: must be 1..8, the banks of the board; --set 'ssram.banks.NEW={}' gives it one more"),
+             "--banks = 9: must be 1..8, the banks of the board; --set 'ssram.banks.NEW={}' gives it one "
+             "more"),
             (["optimise", "fpl2003", "--stripes", 4, "--minimise", "pins"],
              "placements: more than 5000000 different placements"),
-            (["optimise", self.file("own.yaml", PLAN.replace("placements: {banks: 3}\n", "")), "--stripes", 4],
+            (["optimise", self.file("own.yaml", PLAN.replace("placements: {banks: 3}\n", "")),
+              "--stripes", 4],
              "--stripes: goes with --banks N, or with placements in the plan"),
             (["optimise", "fpl2003", "--minimise", "smallest_device"],
-             "--minimise: smallest_device: smallest_device: a text; goals and conditions take numbers"),
+             "--minimise: smallest_device: smallest_device is a text: goals and conditions take numbers"),
             (["optimise", "fpl2003", "--minimise", "pins", "--for", "area.slices"],
              "--for: area.slices: no condition: compare it with a number"),
+            (["optimise", "fpl2003", "--minimise", "pins", "--for", " (area.slices)"],
+             "--for:  (area.slices): no condition"),
             (["optimise", "fpl2003", "--minimise", "pins", "--for", "ssram.default.kind = 'qdr'"],
              "no such column: ssram.default.kind; a key of banks, which may differ in it"),
             (["optimise", self.plan(), "--why", "matcher.unitz=3"],

@@ -124,8 +124,8 @@ class OpenFiles(RobustnessTest):
                 self.assertTrue(process.stderr.endswith(f"{rule}raise it\n"), process.stderr)
         self.assertEqual(enough[1], "7", "the limit before the first that is enough for 8")
         limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20))
-        self.refused_in_one_line(run("optimise", self.plan, "--minimise", "pins", "--jobs", 8, preexec_fn=limit),
-                                 rule)
+        search = ["optimise", self.plan, "--minimise", "pins", "--jobs", 8]
+        self.refused_in_one_line(run(*search, preexec_fn=limit), rule)
 
 
 class ReadOnly(RobustnessTest):

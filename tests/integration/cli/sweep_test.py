@@ -222,6 +222,7 @@ class Refusals(SweepTest):
         plan = self.file("wrong.yaml", f"{PLAN}where:\n  - {condition}\n")
         problem = f"where = {condition}: malformed JSON; finished points are kept: correct the plan\n"
         self.fails(self.sweep(plan=plan), f"stereotlm: error: {plan}:10:5: {problem}")
+        self.assertEqual(list(self.folder.glob(f"{self.store.name}-*")), [])  # it is in its final form
 
     def test_wrong_options_and_databases_are_refused(self):
         sweep = ["sweep", self.plan, "--out", self.store]

@@ -99,8 +99,10 @@ TEST(KeyEffects, WhatAKeyDoesNotChangeStays) {
 // Whether a figure is of what the core accesses, or of the board without a run.
 bool is_of_core(const std::string& path) {
   const std::string section = path.substr(0, path.find('.'));
-  static const std::set<std::string> kSections = {"ports", "banks", "energy", "area", "pins", "smallest_device"};
-  return kSections.count(section) > 0 || path.rfind("bound.", 0) == 0 || path.rfind("frames_per_second.exact", 0) == 0;
+  static const std::set<std::string> kSections = {"ports", "banks", "energy",
+                                                  "area",  "pins",  "smallest_device"};
+  return kSections.count(section) > 0 || path.rfind("bound.", 0) == 0 ||
+         path.rfind("frames_per_second.exact", 0) == 0;
 }
 
 // The boards of the steps, and some whose banks of results differ in what only the host notices.

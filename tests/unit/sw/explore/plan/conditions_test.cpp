@@ -63,7 +63,12 @@ TEST(Conditions, CompareKeysThatHaveTheirNamesInABoardFile) {
       {"pci.load.burst_words = 8 AND 'pci.load.access_us' = 'pci.load.' || 'access_us'",
        true,
        {"pci.load={burst_words: 8, interval_us: 10}"}},
-      {"image.width BETWEEN pci.load.burst_words+1 AND 641", true, {"pci.load={burst_words: 8, interval_us: 10}"}},
+      {"image.width BETWEEN pci.load.burst_words+1 AND 641",
+       true,
+       {"pci.load={burst_words: 8, interval_us: 10}"}},
+      {"1 -- it's\n AND pci.load.burst_words = 8", true, {"pci.load={burst_words: 8, interval_us: 10}"}},
+      {"1 /* it's */ AND pci.load.burst_words = 8", true, {"pci.load={burst_words: 8, interval_us: 10}"}},
+      {"(SELECT \"x y.z.w\" FROM (SELECT 1 AS \"x y.z.w\")) = 1", true, {}},
       {"(SELECT image.width + 1) = 641", true, {}},
       {"max(image.width, 1) = 640 AND min(1, 2) = 1 AND abs(-1) = 1 AND board.name LIKE 'FPL%'", true, {}},
       {"json_array_length('[1, 2]') = 2 AND iif(ssram.banks = 8, 1, 0)", true, {}}};
