@@ -507,11 +507,12 @@ void Explanation::simulate(const std::vector<std::size_t>& numbers, PointSimulat
   }
 }
 
-// The boards that are to be simulated next: the board, its steps and the surest one of each group. Then those
-// that may be better than that one, or all if it loses pixels: what is proven of a rate is of whole pictures.
+// The boards that are to be simulated next: the board, its steps and one of each group, whose rate is certain
+// to be high, or else may be. Then those that may be better than that one, or all if it loses pixels: what is
+// proven of a rate is of whole pictures.
 std::vector<std::size_t> Explanation::next_boards() const {
   struct Group {
-    std::size_t surest = 0;
+    std::size_t first = 0;
     bool is_begun = false;
     double best = -std::numeric_limits<double>::infinity();  // of those that lose no pixels
   };
@@ -521,7 +522,10 @@ std::vector<std::size_t> Explanation::next_boards() const {
   };
   for (std::size_t number = 0; number < outcomes_.size(); ++number) {
     Group& group = groups.emplace(group_of(number), Group{number}).first->second;
-    if (proven_[number].rate.least > proven_[group.surest].rate.least) group.surest = number;
+    const auto promise = [&](std::size_t one) {
+      return std::pair(proven_[one].rate.least, proven_[one].rate.most);
+    };
+    if (promise(number) > promise(group.first)) group.first = number;
     if (!outcomes_[number]) continue;
     group.is_begun = true;
     const Rate rate = rate_of(number);
@@ -532,7 +536,7 @@ std::vector<std::size_t> Explanation::next_boards() const {
     const std::string name = group_of(number);
     const Group& group = groups[name];
     const double most = proven_[number].rate.most;
-    const bool may_be_best = group.is_begun ? most > group.best : number == group.surest || std::isinf(most);
+    const bool may_be_best = group.is_begun ? most > group.best : number == group.first || std::isinf(most);
     if (!outcomes_[number] && (name.empty() || may_be_best)) numbers.push_back(number);
   }
   return numbers;
