@@ -34,6 +34,7 @@ TIMING = {"sync_burst": ["turnaround_cycles"],
           "sdram": ["cas_latency", "row_words", "internal_banks", "activate_cycles", "precharge_cycles",
                     "refresh_interval_cycles", "refresh_cycles"]}
 yaml.SafeDumper.ignore_aliases = lambda *_: True
+MASK = (1 << 64) - 1
 NAMES = re.compile(r"'[^']*'|[A-Za-z_][\w.]*")
 
 
@@ -73,6 +74,24 @@ def numbers_of(text):
     """Those of "0-4 7"."""
     ends = (part.split("-") for part in text.split())
     return [one for end in ends for one in range(int(end[0]), int(end[-1]) + 1)]
+
+
+def shuffled(size, seed, place):
+    """The number at a place of the shuffled numbers below size: a Feistel network of six rounds permutes those
+    of an even number of bits, and is applied again until the result is below size. SplitMix64 mixes."""
+    def mixed(value):
+        value = (value ^ value >> 30) * 0xBF58476D1CE4E5B9 & MASK
+        value = (value ^ value >> 27) * 0x94D049BB133111EB & MASK
+        return value ^ value >> 31
+    bits = max(1, ((size - 1).bit_length() + 1) // 2)
+    keys = [mixed(seed + (turn + 1) * 0x9E3779B97F4A7C15 & MASK) for turn in range(6)]
+    while True:
+        left, right = divmod(place, 1 << bits)
+        for key in keys:
+            left, right = right, left ^ mixed(right ^ key) & (1 << bits) - 1
+        place = left << bits | right
+        if place < size:
+            return place
 
 
 def computed(sql, row, connection=sqlite3.connect(":memory:")):
@@ -170,11 +189,11 @@ class Check:
         self.rows = lambda sql: database.execute(sql).fetchall()
         self.asked = dict(self.rows("SELECT name, value FROM search"))
         plan = read(self.asked["plan"])
-        if "sample" in plan:
-            raise SystemExit("check_search: a plan with sample cannot be checked")
+        self.sample = {name: int(value) for name, value in plan.get("sample", {}).items()}
         self.base, self.run = read(self.asked["board"]), plan.get("run", {})
         self.axes = [{path: values_of(each)} for path, each in plan.get("vary", {}).items()]
         self.axes += [{path: values_of(each) for path, each in axis.items()} for axis in plan.get("zip", [])]
+        self.product = math.prod(len(next(iter(axis.values()))) for axis in self.axes)
         where = plan.get("where", [])
         self.where = where if isinstance(where, list) else [where]
         self.most_banks, self.most_parts = map(int, self.asked["goals"].split()[-2:])
@@ -202,6 +221,8 @@ class Check:
     def combination(self, at):
         """The board of a combination with its own placement, its run, and what the plan gives it."""
         board, run, given = copy.deepcopy(self.base), dict(self.run), {}
+        if self.sample:
+            at = shuffled(self.product, self.sample["seed"], at)
         for axis in reversed(self.axes):
             at, i = divmod(at, len(next(iter(axis.values()))))
             given.update((path, values[i]) for path, values in axis.items())
@@ -310,7 +331,7 @@ class Check:
                 self.wrong("the parts are no cover", first, "behind", ends)
             ends = last
             self.verdicts.update((at, verdict) for at in range(first, last + 1))
-        size = math.prod(len(next(iter(axis.values()))) for axis in self.axes)
+        size = self.sample.get("points", self.product)
         if not ends + 1 == size == self.asked["combinations"]:
             self.wrong("the parts are not all combinations", ends + 1, "of", size)
         spaces, covered = collections.defaultdict(list), collections.defaultdict(list)

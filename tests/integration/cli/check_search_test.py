@@ -98,6 +98,11 @@ class CheckSearch(ProgramTest):
         self.store.unlink()
         self.search(SINGLE)
         self.agrees("dominated", "front")
+        self.store.unlink()
+        self.search(GROUPS + "sample: {points: 40, seed: 3}\n")
+        self.agrees("impossible", "excluded", "dominated", "front", "unmet")
+        self.sees([("UPDATE search SET value = replace(value, 'seed: 3', 'seed: 4') WHERE name = 'plan'",
+                    "a board that is possible, or is not|where says otherwise")])
 
     def test_agrees_with_searches_of_computers(self):
         points = self.folder / "points.db"
