@@ -33,8 +33,11 @@ constexpr double kNoValue = -1;             // of an accuracy
 constexpr std::uint64_t kShortWindow = 30;  // frames of the steady rate of a short run, or a turn more
 constexpr std::uint64_t kExactWindow = 4;   // the same, if the rate is proven
 
-[[noreturn]] void throw_no_figure(const std::string& name) {
-  throw std::runtime_error(fmt::format("{}: a board of the plan does not have this figure", name));
+// `figures`: those of the board.
+[[noreturn]] void throw_no_figure(const std::string& name, const std::vector<std::string>& figures) {
+  const std::string nearest = platform::nearest_path(name, figures);
+  throw std::runtime_error(fmt::format("{}: a board of the plan does not have this figure{}{}", name,
+                                       nearest.empty() ? "" : "; nearest: ", nearest));
 }
 
 // Whether a frame of the core leaves nothing behind that the next frame could notice.
@@ -340,7 +343,7 @@ Combination::OfUse SearchSpace::facts_of(const Combination& of, const BoardConfi
   Combination::OfUse facts = {board, figures_without_simulation(board), {}, {}};
   facts.figures.insert(of.accuracy.begin(), of.accuracy.end());
   for (const std::string& name : without_simulation_) {
-    if (facts.figures.count(name) == 0) throw_no_figure(name);
+    if (facts.figures.count(name) == 0) throw_no_figure(name, {});
   }
   const Known known = {facts.board, of.run, facts.figures};
   for (Expression& goal : goals_)
@@ -474,7 +477,9 @@ std::vector<double> SearchSpace::simulate(Combination& of, const Placements::Gro
                                     [&name](const auto& value) { return value.path == name; });
     if (found == figures.values.end()) {
       const bool may_lack = name == kUncertainty || name == kLostPixels || name.rfind(kExact, 0) == 0;
-      if (!may_lack) throw_no_figure(name);
+      std::vector<std::string> all;
+      for (const platform::BoardValue& value : figures.values) all.push_back(value.path);
+      if (!may_lack) throw_no_figure(name, all);
       values.push_back(0);
     } else if (const auto* const integer = std::get_if<std::int64_t>(&found->value)) {
       values.push_back(static_cast<double>(*integer));

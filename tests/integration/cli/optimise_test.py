@@ -228,6 +228,12 @@ class Optimise(ProgramTest):
         text = self.succeeds(run(*ask, "--for", "frames_per_second.core >= 20000"))
         self.assertRegex(text, r"the first of them: stereotlm explain fpl2003 --set image.width=32")
 
+    def test_names_the_figure_that_is_nearest_to_one_that_no_board_has(self):
+        process = run("optimise", self.plan(), "--minimise", "ports.left_pixl.grants")
+        self.assertEqual((process.returncode, process.stderr), (
+            1, "stereotlm: error: ports.left_pixl.grants: a board of the plan does not have this figure; "
+            "nearest: ports.left_pixel.grants\n"))
+
     def test_says_why_no_board_is_left(self):
         for where, and_steady, why in (
                 ("window = 9", False, "where leaves out every board, or those that are left lose pixels\n"),
