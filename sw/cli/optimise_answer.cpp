@@ -156,13 +156,20 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
       if (search.front().empty() && alone) return none_left_text(question);
       if (search.front().empty()) continue;
       const explore::Range best = search.front().front().values.front();
-      const double value = is_maximum ? best.most : best.least;
       const double asked = std::stod(parts[3]);
-      const bool is_met = parts[2] == ">="   ? value >= asked
-                          : parts[2] == "<=" ? value <= asked
-                          : is_maximum       ? value > asked
-                                             : value < asked;
-      if (is_met) continue;
+      const auto meets = [&](double value) {
+        return parts[2] == ">="   ? value >= asked
+               : parts[2] == "<=" ? value <= asked
+               : is_maximum       ? value > asked
+                                  : value < asked;
+      };
+      const double value = is_maximum ? best.most : best.least;
+      if (meets(best.least) && meets(best.most)) continue;
+      if (meets(value)) {
+        text += fmt::format("no board{} surely meets {}: the nearest has {}, which leaves it open\n",
+                            alone ? "" : " that meets the other requirements", condition, value_text(best));
+        continue;
+      }
       text += fmt::format("no board{} meets {}: the nearest has {}, which misses by {:.6g}\n",
                           alone ? "" : " that meets the other requirements", condition, value_text(best),
                           std::abs(asked - value));
@@ -170,7 +177,9 @@ std::string empty_text(const Question& question, const explore::BoardModel& mode
     if (!text.empty()) return text;
   }
   return question.wishes.requirements.empty() ? none_left_text(question)
-                                              : "no board meets all requirements together\n";
+         : question.wishes.requirements.size() == 1
+             ? fmt::format("no board meets {}\n", question.wishes.requirements.front().text)
+             : "no board meets all requirements together\n";
 }
 
 // Why there is no board.

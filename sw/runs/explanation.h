@@ -82,8 +82,8 @@ class Explanation {
   std::uint64_t frames() const { return explore::frames_of(run_, board_); }
   bool camera() const { return run_.camera; }
 
-  // The bank with the most accesses for a frame. Of a whole computer these are those of the long run, with all
-  // that the host moves, also between two frames.
+  // The bank with the most accesses for a frame. Of a whole computer these are those of the long run, with
+  // all that the host moves, also between two frames.
   struct BusiestBank {
     std::string name;
     double accesses_per_frame = 0;  // with separate ports: the larger of its reads and its writes

@@ -77,8 +77,8 @@ def numbers_of(text):
 
 
 def shuffled(size, seed, place):
-    """The number at a place of the shuffled numbers below size: a Feistel network of six rounds permutes those
-    of an even number of bits, and is applied again until the result is below size. SplitMix64 mixes."""
+    """The number at a place of the shuffled numbers below size: a Feistel network of six rounds permutes
+    those of an even number of bits, and is applied again until the result is below size. SplitMix64 mixes."""
     def mixed(value):
         value = (value ^ value >> 30) * 0xBF58476D1CE4E5B9 & MASK
         value = (value ^ value >> 27) * 0x94D049BB133111EB & MASK

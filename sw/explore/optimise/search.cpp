@@ -378,8 +378,7 @@ Search::Judgement Search::judge(const platform::BoardDraft& draft, const PointRu
               return space_.simulate(its, group, placement, which, is_short);
             });
         if (its_own.fate == "unmet") {
-          found.unmet = fmt::format("all requirements{}, as its simulation shows",
-                                    its.run.camera ? ", or loses pixels" : "");
+          found.unmet = space_.unmet() + ", as its simulation shows";
           continue;
         }
         GoalValues best{};

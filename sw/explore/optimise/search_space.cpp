@@ -53,7 +53,7 @@ std::string nearest_name(const std::string& message, const std::set<std::string>
   const std::string unknown = "no such column: ";
   if (message.rfind(unknown, 0) != 0) return "";
   const std::string name = message.substr(unknown.size());
-  if (const std::string remark = bank_key_remark(name); !remark.empty()) return remark;
+  if (const std::string remark = no_value_remark(name); !remark.empty()) return remark;
   if (figures.count(name) > 0 || stats::find_figure(name) != nullptr || platform::find_key(name) != nullptr)
     return "; write it without quotes";
   std::vector<std::string> names = stats::figure_names_like(name);
@@ -520,7 +520,10 @@ std::optional<SearchSpace::Worth> SearchSpace::worth(Combination& of, const Plac
   Worth worth;
   Known now = {facts.board, of.run, facts.figures};
   for (const auto& [name, value] : named(of, results, facts.board)) now.others[name] = Range::of(value);
-  if (needs_whole_pictures_ && of.run.camera && now.range(kLostPixels).least > 0) return std::nullopt;
+  if (const double lost = now.range(kLostPixels).least; needs_whole_pictures_ && of.run.camera && lost > 0) {
+    unmet_ = fmt::format("what counts: it loses {:.0f} pixels", lost);
+    return std::nullopt;
+  }
   if (const auto steady = now.others.find(kSteady); steady != now.others.end() && of.run.camera) {
     const double rate = steady->second.least;
     const double uncertainty = now.range(kUncertainty).least;
@@ -537,7 +540,13 @@ std::optional<SearchSpace::Worth> SearchSpace::worth(Combination& of, const Plac
   for (std::size_t i = 0; i < requirements_.size(); ++i) {
     const auto& fixed = facts.requirements[i];
     const std::optional<bool> holds = fixed ? fixed : requirements_[i].holds(now);
-    if (!holds.value_or(is_short)) return std::nullopt;
+    if (!holds.value_or(is_short)) {
+      unmet_ = requirements_[i].text();
+      if (!holds)
+        unmet_ +=
+            fmt::format(" for sure: its rate is {:.6f} to {:.6f}", worth.steady.least, worth.steady.most);
+      return std::nullopt;
+    }
     worth.is_known = worth.is_known && holds.has_value();
   }
   for (std::size_t goal = 0; goal < goals(); ++goal) {

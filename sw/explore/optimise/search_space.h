@@ -115,6 +115,8 @@ class SearchSpace {
   Combination& take(std::uint64_t number, platform::BoardConfig board, const PointRun& run,
                     std::vector<std::string> rules, bool places);
   const std::string& requirement(std::size_t number) const { return requirements_[number].text(); }
+  // What the last board for which worth() has returned nullopt does not meet.
+  const std::string& unmet() const { return unmet_; }
   // Of a group of placements, without a simulation.
   struct Estimate {
     bool may_meet = true;   // the requirements
@@ -186,6 +188,7 @@ class SearchSpace {
   bool needs_whole_pictures_ = false;            // a computer that loses pixels does not count
   bool needs_steady_alone_ = false;              // the only one of a run is the steady rate
   bool needs_energy_ = false;                    // that of sdram does not follow from the cycles alone
+  std::string unmet_;
   std::unique_ptr<Conditions> conditions_;
   std::map<std::string, std::shared_ptr<const Placements>> placements_;
   std::unordered_map<std::string, std::uint64_t> cycles_;  // bounds, by their keys

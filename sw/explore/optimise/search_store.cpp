@@ -87,7 +87,8 @@ SearchStore::SearchStore(const std::string& path, const Asked& asked)
       return;
     }
     throw sqlite::DatabaseError(
-        fmt::format("{}: holds another search, which differs in its {}: give another file", path, name));
+        fmt::format("{}: holds another search, which differs in its {}: give another file", path,
+                    name == "goals" ? "goals, requirements or placements" : name));
   }
 }
 

@@ -81,7 +81,7 @@ std::string with_nearest(const std::string& reason) {
   if (names_of_conditions().count(name) > 0) return reason + "; write the key without quotes";
   if (stats::find_figure(name) != nullptr)
     return reason + "; a figure is not known before the point is simulated";
-  if (const std::string remark = bank_key_remark(name); !remark.empty()) return reason + remark;
+  if (const std::string remark = no_value_remark(name); !remark.empty()) return reason + remark;
   const std::set<std::string>& names = names_of_conditions();
   const std::string nearest = platform::nearest_path(name, {names.begin(), names.end()});
   return nearest.empty() ? reason : reason + "; nearest: " + nearest;
@@ -135,10 +135,12 @@ std::vector<NamePlace> names_at(const std::string& text) {
   return names;
 }
 
-std::string bank_key_remark(const std::string& name) {
-  const platform::Key* const key = platform::find_key(name);
-  const bool is_of_banks = key != nullptr && !platform::has_value(*key) && key->path.rfind("ssram.", 0) == 0;
-  return is_of_banks ? "; a key of banks, which may differ in it" : "";
+std::string no_value_remark(const std::string& name) {
+  const platform::Key* const key = platform::find_key(platform::schema_path(name));
+  if (key == nullptr || platform::has_value(*key)) return "";
+  return key->path.rfind("ssram.", 0) == 0
+             ? "; a key of banks: of these a condition knows only their number, ssram.banks"
+             : "; no single value: name a key below it, or the one of which it is a part";
 }
 
 // Compiles each text twice. First without brackets, at the end of a statement, which refuses unbalanced

@@ -85,8 +85,8 @@ struct NamePlace {
 // All but those in strings and comments.
 std::vector<NamePlace> names_at(const std::string& text);
 
-// "; a key of banks, which may differ in it" for such a key, which no board as a whole has; else empty.
-std::string bank_key_remark(const std::string& name);
+// What to say of a name of keys that are no single value of a board, such as those of banks; else empty.
+std::string no_value_remark(const std::string& name);
 
 // A sequence of points. Each point is made from its number when it is needed, and not stored.
 struct Points {

@@ -266,6 +266,14 @@ class Optimise(ProgramTest):
         for condition in (f"{rate} >= 20", f"20 <= {rate}", f"{rate} * 2 >= 40", f"{rate} > 2e1",
                           f"{rate} BETWEEN 20 AND 40", f"{rate} >= 20 AND pins > 0"):
             self.assertEqual(self.values(plan, "--for", condition), [[1, 2]], condition)
+        # One that lies within the range is open, and the answer says so.
+        self.found(plan, "--for", f"{rate} >= 29")
+        text = self.succeeds(run("optimise", plan, "--for", f"{rate} >= 29.97"))
+        self.assertRegex(text, rf"no board surely meets {rate} >= 29.97: the nearest has [\d.]+ ± [\d.]+, "
+                         "which leaves it open")
+        text = self.succeeds(run("optimise", plan, "--for", f"{rate} >= 29.97", "--why",
+                                 "matcher.lr_tolerance=1"))
+        self.assertIn(f"this board does not meet {rate} >= 29.97 for sure: its rate is 2", text)
         for condition in (f"{rate} >= 31", f"31 <= {rate}", f"{rate} BETWEEN 31 AND 40"):
             self.assertEqual(self.found(plan, "--for", condition)["front"], [], condition)
 
@@ -400,7 +408,11 @@ maximise: frames_per_second.steady
             (["optimise", "fpl2003", "--minimise", "pins", "--for", " (area.slices)"],
              "--for:  (area.slices): no condition"),
             (["optimise", "fpl2003", "--minimise", "pins", "--for", "ssram.default.kind = 'qdr'"],
-             "no such column: ssram.default.kind; a key of banks, which may differ in it"),
+             "no such column: ssram.default.kind; a key of banks: of these a condition knows only their "
+             "number"),
+            (["optimise", "fpl2003", "--minimise", "pins", "--for", "pci.load = 'none'"],
+             "no such column: pci.load; no single value: name a key below it, or the one of which it is a "
+             "part"),
             (["optimise", self.plan(), "--why", "matcher.unitz=3"],
              "--why: matcher.unitz = 3: unknown key; nearest known key: matcher.units"),
             (["optimise", self.file("camera.yaml", COMPUTER + "run: {source: camera}\n"), "--minimise",
@@ -413,7 +425,8 @@ maximise: frames_per_second.steady
         self.succeeds(run("optimise", self.plan(), "--out", self.store))
         process = run("optimise", self.plan(), "--out", self.store, "--for", "pins < 500")
         self.assertEqual(process.returncode, 2)
-        self.assertIn("holds another search, which differs in its goals: give another file", process.stderr)
+        self.assertIn("holds another search, which differs in its goals, "
+                      "requirements or placements: give another file", process.stderr)
 
 
 if __name__ == "__main__":
