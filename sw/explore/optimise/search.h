@@ -20,7 +20,7 @@
 namespace stereotlm::explore {
 
 struct SearchState {
-  std::uint64_t boards = 0;     // of the space, as far as they are counted
+  std::uint64_t boards = 0;     // that `where` leaves, as far as counted
   bool is_counted = false;      // all of them
   std::uint64_t open = 0;       // not decided yet, at most
   std::uint64_t simulated = 0;  // runs

@@ -506,8 +506,10 @@ def main():
     if arguments.origin and not re.fullmatch(r"https?://[\w.:\[\]-]+", arguments.origin):
         parser.error(f"--origin = {arguments.origin}: must be as in https://hub.example.org")
     read, write = os.pipe()
+    os.set_blocking(write, False)
+    signal.set_wakeup_fd(write)  # whichever thread gets the signal; a handler needs the main thread to go on
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(each, lambda *_: os.write(write, b"\n"))
+        signal.signal(each, lambda *_: None)
     warnings.simplefilter("ignore")
     os.lseek(arguments.page, 0, os.SEEK_SET)
     with open(arguments.page, encoding="utf-8", newline="") as file:

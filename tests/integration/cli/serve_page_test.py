@@ -81,6 +81,7 @@ class LiveTest(ProgramTest):
             self.assertEqual(server.wait(10), 0)
             server.stdout.close()
 
+        self.addCleanup(server.kill)  # if it has not ended
         self.addCleanup(end)
         return server.stdout.readline().split()[-1]
 

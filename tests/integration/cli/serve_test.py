@@ -2,6 +2,7 @@
 
 import base64
 import contextlib
+import ctypes
 import hashlib
 import http.client
 import json
@@ -437,6 +438,15 @@ class Lifetimes(ServeTest):
                 self.assertEqual(server.end(number), (0, ""))
                 wait_until(lambda: not any(map(stat, left)), 2)
                 self.assertEqual(list(self.folder.glob("stereotlm_*")), [])
+
+    def test_a_signal_to_another_thread_ends_it_too(self):
+        server = self.serve()
+        process = server.process.pid
+        other = next(int(path.name) for path in pathlib.Path(f"/proc/{process}/task").iterdir()
+                     if int(path.name) != process)
+        time.sleep(0.2)  # the main thread waits
+        self.assertEqual(ctypes.CDLL(None).tgkill(process, other, signal.SIGINT), 0)
+        self.assertEqual(server.process.wait(10), 0)
 
     def test_a_board_shows_it_in_a_notebook(self):
         live = stereotlm.Board("fpl2003", sets={"matcher.window": 5}).live(height=300)

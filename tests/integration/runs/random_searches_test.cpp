@@ -294,10 +294,10 @@ BruteForce brute_force(const explore::Plan& plan) {
   for (std::uint64_t number = 0; number < plan.size(); ++number) {
     runs::PointSimulator simulator;
     for (const BoardConfig& board : boards_of(plan, number)) {
-      ++found.boards;
       if (!plan.conditions().empty() && board.matcher.window + board.matcher.rows == 5 &&
           board.fpga.lanes != 2)
         continue;
+      ++found.boards;
       const explore::Point point = explore::make_point(number, board, plan.read(number).run);
       const explore::Figures figures = simulator(point);
       if (!meets(plan, board, figures)) continue;
