@@ -40,7 +40,7 @@ const std::set<std::string>& names_of_conditions() {
   return kNames;
 }
 
-// The same expression with ssram."default.kind" for ssram.default.kind.
+// The same expression with pci."load.burst_words" for pci.load.burst_words.
 std::string with_columns(const std::string& text) {
   std::string result;
   std::size_t done = 0;

@@ -52,6 +52,12 @@ class Check(ProgramTest):
         for command in ("check", "bounds"):
             self.assertEqual(run(command, "fpl2003").stderr, "")
             self.assertIn(remark, run(command, "fpl2003", *sets("fpga.clock_mhz=41")).stderr)
+        small = sets("image.width=32", "image.height=24")
+        for command in (["allocate", "--source", "preloaded"],
+                        ["optimise", "--maximise", "frames_per_second.core"]):
+            words = [command[0], "fpl2003", "--banks", 2, *small, *command[1:]]
+            self.assertNotIn("above the 40 MHz", run(*words).stderr)
+            self.assertIn(remark, run(*words, *sets("fpga.clock_mhz=41")).stderr)
 
     def test_names_the_board_in_a_folder_of_results(self):
         self.succeeds(self.run_small("--out", self.out))

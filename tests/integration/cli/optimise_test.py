@@ -321,6 +321,10 @@ maximise: frames_per_second.steady
         points = self.found(plan)["front"]
         self.assertEqual(sum(point["boards"] for point in points), 6)
         self.assertEqual({point["values"][0]["most"] for point in points}, {60})
+        # Ranges that are less than a thousandth wide are printed with more decimals.
+        text = self.succeeds(run("optimise", plan))
+        self.assertIn("59.99", text)
+        self.assertNotIn("± 0.000 ", text)
         self.assertEqual(self.found(plan, "--for", "frames_per_second.steady < 60")["front"], [])
 
     def test_a_knob_of_the_command_keeps_its_value(self):

@@ -120,6 +120,10 @@ class Quality(ProgramTest):
         for pairs, more, text in refusals:
             with self.subTest(text):
                 self.refused(run("sweep", self.plan(pairs, more), "--out", self.folder / "x.db"), text)
+        # Nothing is said of the size of a picture that cannot be read.
+        none = {"left": "l.pgm", "right": "r.pgm", "truth": "t.pgm"}
+        errors = run("sweep", self.plan([none, good]), "--out", self.folder / "x.db").stderr
+        self.assertEqual([errors.count(text) for text in (".pgm': no such file", "pixels")], [3, 0])
         for options, text, *plan in (([], "run.pairs[0].scale = 0: ", [good], "", ", scale: 0"),
                                      (["--launcher", "slurm"], f"{where}: not with --launcher", [good]),
                                      ([], "run.synthetic: can only be given in `run`", [], "", "",

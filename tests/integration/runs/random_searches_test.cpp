@@ -565,6 +565,11 @@ TEST(RandomSearches, OfComputersFindTheFrontOfBruteForce) {
       found[values] += point.boards;
     }
     EXPECT_EQ(found, expected) << "seed " << seed << '\n' << board_text << plan_text;
+    double certain = 0;  // the best that a board has for sure
+    for (const auto& one : expected) certain = std::max(certain, one.first[0].first);
+    if (!expected.empty()) {
+      EXPECT_EQ(search.state().best, certain);
+    }
   }
 }
 
